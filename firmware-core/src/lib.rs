@@ -1,1 +1,39 @@
+//! What the instrument does, from raw integers to an acceleration.
+//!
+//! ```text
+//!              counter.rs  thermometer.rs      drivers over embedded-hal
+//!                   └─────┬─────┘
+//!                      Sample                  integers of one instant
+//!                         │ observe.rs         integer differences, time, then f32
+//!                    Observation
+//!          memory.rs ─┐   │
+//!   effect/*.rs ──────┤   │                    what disturbs the resonators, what disturbs the output
+//!   network.rs ───────┴───┤ compensator.rs
+//!                      Reading                 acceleration and its status
+//!                         │ instrument.rs      the conversation: requests in, responses out
+//! ```
+//!
+//! Everything that computes is generic over [`Real`]: the device runs it in `f32`, the trainer in
+//! `f64`. The `f32` results have the same bits on every processor: only + − × ÷ and comparisons in a
+//! fixed order, software `exp` from `libm`, and no NaN is ever computed with.
 #![no_std]
+
+pub mod activation;
+mod compensator;
+mod counter;
+pub mod effect;
+mod instrument;
+mod memory;
+mod network;
+mod observe;
+mod real;
+mod thermometer;
+
+pub use compensator::{Compensator, LoadError, Output};
+pub use counter::{Counter, CounterError, Pair};
+pub use instrument::{Instrument, Sensors};
+pub use memory::{Memory, State};
+pub use network::Network;
+pub use observe::{Clock, Observation, Scale};
+pub use real::Real;
+pub use thermometer::{Thermometer, ThermometerError};

@@ -1,1 +1,31 @@
+//! What host and instrument say to each other.
+//!
+//! ```text
+//! Sample   raw integers of one instant            sample.rs
+//! Reading  acceleration and its status            reading.rs
+//! Blob     a calibration, as the device stores it blob.rs, weights.rs
+//! Request, Response                               message.rs
+//! bytes on the line                               frame.rs
+//! every bound in one place                        limits.rs
+//! ```
+//!
+//! This crate evaluates nothing: it knows how a calibration is written down, not what it means.
+//! `docs/wire.md` specifies the bytes; the tests of this crate hold them still.
 #![no_std]
+
+mod blob;
+mod checksum;
+mod frame;
+pub mod limits;
+mod message;
+mod reading;
+mod sample;
+mod weights;
+
+pub use blob::{Blob, BlobError, Domain, Scaling, Term, Timing};
+pub use checksum::crc32;
+pub use frame::{Decoder, FrameError, encode_frame, encode_request, encode_response};
+pub use message::{Envelope, Identity, InstrumentState, Refusal, Request, Response};
+pub use reading::{Reading, Status};
+pub use sample::Sample;
+pub use weights::Weights;

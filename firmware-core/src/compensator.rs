@@ -1,0 +1,294 @@
+//! From a checked calibration and samples to readings.
+
+use crate::effect::{self, Coefficients, Disturbance, Effect, Moment, Signal};
+use crate::memory::{Memory, State};
+use crate::network::Network;
+use crate::observe::{Clock, Observation, Scale, Step};
+use crate::real::Real;
+use core::fmt;
+use heapless::Vec;
+use protocol::limits::{MAX_CHANNELS, MAX_PARAMETERS, MAX_TERMS};
+use protocol::{Blob, Domain, Reading, Sample, Scaling, Status, Term};
+
+/// Why a calibration can't be run, although its bytes are sound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// This firmware doesn't know the effect.
+    UnknownEffect(u16),
+    /// The effect takes another number of coefficients.
+    Coefficients {
+        /// The effect's number.
+        effect: u16,
+        /// Coefficients in the blob.
+        found: usize,
+        /// Coefficients that it takes.
+        expected: usize,
+    },
+    /// The effect uses a channel that the blob doesn't name.
+    Channel {
+        /// The effect's number.
+        effect: u16,
+    },
+    /// A weight, coefficient or scale is infinite or not a number, or an input gain is not positive.
+    Number,
+    /// The calibrated domain is empty.
+    Domain,
+    /// This processor computes other bits than the one that made the calibration.
+    Proof {
+        /// The checksum of the bits computed here.
+        computed: u32,
+        /// The checksum that the blob carries.
+        stored: u32,
+    },
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnknownEffect(id) => write!(f, "effect number {id} is unknown to this firmware"),
+            Self::Coefficients { effect, found, expected } => {
+                write!(f, "effect number {effect} takes {expected} coefficients, the blob has {found}")
+            }
+            Self::Channel { effect } => write!(f, "effect number {effect} uses a channel that the blob doesn't name"),
+            Self::Number => write!(f, "a weight, coefficient or scale is not a usable number"),
+            Self::Domain => write!(f, "the calibrated domain is empty"),
+            Self::Proof { computed, stored } => write!(
+                f,
+                "this processor computes other bits ({computed:#010x}) than the one that made the calibration ({stored:#010x})"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for LoadError {}
+
+/// A calibration that was checked and is being run.
+///
+/// In `f32` this is the one evaluator of a deployed model, on the device and on the host. In `f64`
+/// the trainer differentiates the same formulas.
+#[derive(Clone)]
+pub struct Compensator<R: Real = f32> {
+    scaling: Scaling,
+    scale: Scale<R>,
+    network: Network<R>,
+    domain: Domain,
+    clock: Clock,
+    terms: Vec<ActiveTerm<R>, MAX_TERMS>,
+}
+
+#[derive(Clone)]
+struct ActiveTerm<R: Real> {
+    effect: &'static dyn Effect<R>,
+    coefficients: Coefficients<R>,
+    channel: usize,
+    memory: Memory<R>,
+    state: State<R>,
+}
+
+/// What the compensator made of one sample, before it is rounded into a [`Reading`].
+#[derive(Clone, Copy, Debug)]
+pub struct Output<R> {
+    /// Inputs of the network after the effects' share was taken out.
+    pub inputs: [R; 2],
+    /// What the static model reads at those inputs, g.
+    pub level_g: R,
+    /// What the effects add to the level, g; the acceleration is the level without it.
+    pub bias_g: R,
+    /// What stands between the reading and full trust.
+    pub status: Status,
+}
+
+impl Compensator<f32> {
+    /// Checks a calibration and makes it ready to run.
+    ///
+    /// # Errors
+    /// A [`LoadError`] that says why this firmware can't run it.
+    pub fn load(blob: &Blob) -> Result<Self, LoadError> {
+        let compensator = Self::assemble(blob)?;
+        let computed = compensator.network.proof().ok_or(LoadError::Number)?;
+        if computed != blob.proof {
+            return Err(LoadError::Proof { computed, stored: blob.proof });
+        }
+        Ok(compensator)
+    }
+
+    /// The reading of the next sample. Never panics, never computes with a NaN.
+    pub fn compensate(&mut self, sample: &Sample) -> Reading {
+        if sample.faults.intersects(Status::FATAL) {
+            // Memories must not see the impossible values; the gap tells them later.
+            return Reading::none(sample.time_us, sample.faults);
+        }
+        let output = self.evaluate(sample);
+        let acceleration_g = output.level_g - output.bias_g;
+        if acceleration_g.is_finite() {
+            Reading { time_us: sample.time_us, acceleration_g, status: output.status }
+        } else {
+            Reading::none(sample.time_us, output.status | Status::UNCALIBRATED)
+        }
+    }
+}
+
+impl<R: Real> Compensator<R> {
+    /// The compensator of a blob in any arithmetic, checked except for the proof.
+    ///
+    /// # Errors
+    /// A [`LoadError`] that says what is wrong with the blob.
+    pub fn assemble(blob: &Blob) -> Result<Self, LoadError> {
+        check_numbers(blob)?;
+        let domain = blob.domain;
+        if domain.delta_f_uhz.0 >= domain.delta_f_uhz.1 || domain.temperature_uc.0 >= domain.temperature_uc.1 {
+            return Err(LoadError::Domain);
+        }
+        let mut terms = Vec::new();
+        for term in &blob.terms {
+            // The blob holds at most MAX_TERMS, so there is room.
+            let _ = terms.push(ActiveTerm::new(term, blob.channels.len())?);
+        }
+        Ok(Self {
+            scaling: blob.scaling,
+            scale: Scale::new(&blob.scaling),
+            network: Network::new(&blob.weights),
+            domain,
+            clock: Clock::new(blob.timing.max_gap_us),
+            terms,
+        })
+    }
+
+    /// Forgets the past, as at power-on after a long soak.
+    pub fn restart(&mut self) {
+        self.clock.restart();
+        for term in &mut self.terms {
+            term.state = State::REST;
+        }
+    }
+
+    /// Observes the sample, advances the memories, evaluates network and effects.
+    pub fn evaluate(&mut self, sample: &Sample) -> Output<R> {
+        let now = Observation::new(sample, &self.scaling);
+        let (step, last, mut status) = self.clock.step(sample);
+        status |= sample.faults | self.outside(sample);
+        if self.terms.is_empty() {
+            let (inputs, level_g) = self.level(&now, &Disturbance::NONE);
+            return Output { inputs, level_g, bias_g: R::ZERO, status };
+        }
+        let (_, apparent_g) = self.level(&now, &Disturbance::NONE);
+        for term in &mut self.terms {
+            term.remember(step, sample, last.as_ref());
+            status |= term.flags(sample);
+        }
+        let mut disturbance = Disturbance::NONE;
+        for term in &self.terms {
+            disturbance += term.effect.disturb(&term.moment(&now, apparent_g), &term.coefficients);
+        }
+        let (inputs, level_g) = self.level(&now, &disturbance);
+        let mut bias_g = R::ZERO;
+        for term in &self.terms {
+            bias_g += term.effect.bias_g(&term.moment(&now, level_g), &term.coefficients);
+        }
+        Output { inputs, level_g, bias_g, status }
+    }
+
+    /// Network inputs and static reading once the disturbance of the resonators is taken out.
+    fn level(&self, now: &Observation<R>, disturbance: &Disturbance<R>) -> ([R; 2], R) {
+        let [x, t] = self.scale.inputs(
+            now.delta_f_offset_hz - disturbance.delta_f_hz,
+            now.temperature_offset_c + disturbance.temperature_c,
+        );
+        ([x, t], self.scale.reading_g(x, t, self.network.evaluate(x, t)))
+    }
+
+    fn outside(&self, sample: &Sample) -> Status {
+        let within = |value: i64, (low, high): (i64, i64)| (low..=high).contains(&value);
+        let (low, high) = self.domain.temperature_uc;
+        let mut status = Status::empty();
+        status.set(
+            Status::TEMPERATURE_OUTSIDE,
+            !within(i64::from(sample.temperature_uc), (i64::from(low), i64::from(high))),
+        );
+        status.set(Status::FREQUENCY_OUTSIDE, !within(sample.delta_f_uhz, self.domain.delta_f_uhz));
+        status
+    }
+}
+
+impl<R: Real> ActiveTerm<R> {
+    fn new(term: &Term, channels: usize) -> Result<Self, LoadError> {
+        let effect = effect::find::<R>(term.effect).ok_or(LoadError::UnknownEffect(term.effect))?;
+        let (found, expected) = (term.parameters.len(), effect.coefficients());
+        if found != expected {
+            return Err(LoadError::Coefficients { effect: term.effect, found, expected });
+        }
+        let channel = usize::from(term.channel);
+        if effect.signal() == Signal::Channel && channel >= channels {
+            return Err(LoadError::Channel { effect: term.effect });
+        }
+        let mut coefficients = [R::ZERO; MAX_PARAMETERS];
+        for (slot, value) in coefficients.iter_mut().zip(&term.parameters) {
+            *slot = R::from_f32(*value);
+        }
+        let memory = effect.memory(&coefficients);
+        Ok(Self { effect, coefficients, channel, memory, state: State::REST })
+    }
+
+    fn remember(&mut self, step: Step, sample: &Sample, last: Option<&Sample>) {
+        match (step, last) {
+            (Step::Anew, _) => self.state = State::REST,
+            (Step::Forward(gap_us), Some(last)) => {
+                let dt_s = R::from_micro(i64::try_from(gap_us).unwrap_or(i64::MAX));
+                let increment = self.increment(sample, last);
+                self.state.advance(&self.memory, increment, dt_s);
+            }
+            _ => {}
+        }
+    }
+
+    /// By how much the signal that this effect follows changed, differenced as integers.
+    fn increment(&self, sample: &Sample, last: &Sample) -> R {
+        match self.effect.signal() {
+            Signal::Temperature => {
+                R::from_micro(i64::from(sample.temperature_uc) - i64::from(last.temperature_uc))
+            }
+            Signal::Channel => {
+                let of = |sample: &Sample| sample.channels.get(self.channel).copied().unwrap_or(0);
+                R::from_micro(of(sample).saturating_sub(of(last)))
+            }
+        }
+    }
+
+    fn moment<'a>(&self, now: &'a Observation<R>, level_g: R) -> Moment<'a, R> {
+        Moment {
+            now,
+            departure: self.state.departure(),
+            channel: now.channels.get(self.channel).copied().unwrap_or(R::ZERO),
+            level_g,
+        }
+    }
+
+    fn flags(&self, sample: &Sample) -> Status {
+        let mut status = Status::empty();
+        status.set(Status::SETTLING, self.memory != Memory::None && !self.state.is_settled());
+        status.set(Status::CHANNEL_MISSING, self.effect.needs_age() && sample.age_s.is_none());
+        status
+    }
+}
+
+fn check_numbers(blob: &Blob) -> Result<(), LoadError> {
+    let scaling = &blob.scaling;
+    let gains = [scaling.delta_f_gain_per_hz, scaling.temperature_gain_per_c];
+    let mut numbers = blob
+        .weights
+        .to_array()
+        .into_iter()
+        .chain(gains)
+        .chain(scaling.line_g)
+        .chain([scaling.output_g])
+        .chain(blob.terms.iter().flat_map(|term| term.parameters.iter().copied()));
+    if numbers.all(f32::is_finite) && gains.iter().all(|gain| *gain > 0.0) {
+        Ok(())
+    } else {
+        Err(LoadError::Number)
+    }
+}
+
+// The host's channel count and the wire's must agree for the indices above.
+const _: () = assert!(MAX_CHANNELS <= u8::MAX as usize);

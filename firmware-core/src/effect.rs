@@ -1,0 +1,179 @@
+//! Physical effects beside the network: pure functions of one moment and their coefficients.
+//!
+//! History is observed once ([`crate::memory`]); effects only look. Each is one file with the same
+//! skeleton: what happens physically, [`About`], [`Effect`], tests. A coefficient has the sign and
+//! unit of the physics (what the effect *does* to the sensor); the compensator takes it out again.
+//! `docs/adding-an-effect.md` shows how to write the next one.
+
+mod second_order;
+mod supply_voltage;
+mod thermal_gradient;
+mod thermal_hysteresis;
+mod thermal_lag;
+mod warm_up;
+
+use crate::memory::Memory;
+use crate::observe::Observation;
+use crate::real::Real;
+use core::ops::AddAssign;
+use protocol::limits::MAX_PARAMETERS;
+
+/// An effect's coefficients in its own order and units, unused ones zero.
+pub type Coefficients<R> = [R; MAX_PARAMETERS];
+
+/// What an effect does, in the arithmetic `R`.
+pub trait Effect<R: Real>: Sync {
+    /// How many coefficients it takes.
+    fn coefficients(&self) -> usize;
+
+    /// Which signal its memory follows.
+    fn signal(&self) -> Signal {
+        Signal::Temperature
+    }
+
+    /// How it remembers that signal.
+    fn memory(&self, _coefficients: &Coefficients<R>) -> Memory<R> {
+        Memory::None
+    }
+
+    /// Whether it needs the calendar age.
+    fn needs_age(&self) -> bool {
+        false
+    }
+
+    /// What it does to the resonators before they vibrate.
+    fn disturb(&self, _moment: &Moment<R>, _coefficients: &Coefficients<R>) -> Disturbance<R> {
+        Disturbance::NONE
+    }
+
+    /// What it adds to the output, g.
+    fn bias_g(&self, _moment: &Moment<R>, _coefficients: &Coefficients<R>) -> R {
+        R::ZERO
+    }
+}
+
+/// A signal that an effect follows through time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal {
+    /// The thermometer.
+    Temperature,
+    /// The auxiliary channel that the term names.
+    Channel,
+}
+
+/// What an effect sees of one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a, R> {
+    /// The present observation.
+    pub now: &'a Observation<R>,
+    /// How far the remembered signal is from equilibrium, in the signal's unit.
+    pub departure: R,
+    /// The value of the effect's auxiliary channel.
+    pub channel: R,
+    /// The static reading, g.
+    pub level_g: R,
+}
+
+/// What effects do to the resonators.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disturbance<R> {
+    /// Resonators minus thermometer, °C.
+    pub temperature_c: R,
+    /// Frequency difference with the effect minus without it, Hz.
+    pub delta_f_hz: R,
+}
+
+impl<R: Real> Disturbance<R> {
+    /// Nothing.
+    pub const NONE: Self = Self { temperature_c: R::ZERO, delta_f_hz: R::ZERO };
+
+    /// Resonators warmer than the thermometer by this, °C.
+    pub const fn of_temperature(temperature_c: R) -> Self {
+        Self { temperature_c, delta_f_hz: R::ZERO }
+    }
+}
+
+impl<R: Real> AddAssign for Disturbance<R> {
+    fn add_assign(&mut self, other: Self) {
+        self.temperature_c += other.temperature_c;
+        self.delta_f_hz += other.delta_f_hz;
+    }
+}
+
+/// What a person should know of an effect. The device never links this.
+#[derive(Clone, Copy, Debug)]
+pub struct About {
+    /// Its number on the wire. Released numbers keep their formula for ever.
+    pub id: u16,
+    /// Its name on the command line, in model files and in reports.
+    pub name: &'static str,
+    /// What happens, in a sentence or two of plain language.
+    pub summary: &'static str,
+    /// The formula.
+    pub equation: &'static str,
+    /// Where the formula comes from.
+    pub source: &'static str,
+    /// Its coefficients in order.
+    pub parameters: &'static [Parameter],
+    /// The auxiliary channel that it follows, if any.
+    pub channel: Option<&'static str>,
+    /// What a campaign must contain to show it.
+    pub needs: &'static str,
+}
+
+/// One coefficient of an effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Its name, with the unit at the end.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Where a fit starts.
+    pub start: f64,
+    /// The least value that makes physical sense.
+    pub low: f64,
+    /// The greatest value that makes physical sense.
+    pub high: f64,
+}
+
+macro_rules! registry {
+    ($($module:ident :: $effect:ident),* $(,)?) => {
+        /// What a person should know of every effect, by number.
+        pub const ALL: &[&About] = &[$(&$module::ABOUT),*];
+
+        /// The effect of this number.
+        #[must_use]
+        pub fn find<R: Real>(id: u16) -> Option<&'static dyn Effect<R>> {
+            $(if id == $module::ABOUT.id { return Some(&$module::$effect); })*
+            None
+        }
+    };
+}
+
+registry! {
+    thermal_lag::ThermalLag,
+    thermal_gradient::ThermalGradient,
+    warm_up::WarmUp,
+    thermal_hysteresis::ThermalHysteresis,
+    second_order::SecondOrder,
+    supply_voltage::SupplyVoltage,
+}
+
+/// The highest effect number.
+pub const HIGHEST: u16 = {
+    let mut highest = 0;
+    let mut i = 0;
+    while i < ALL.len() {
+        if ALL[i].id > highest {
+            highest = ALL[i].id;
+        }
+        i += 1;
+    }
+    highest
+};
+
+/// What a person should know of the effect of this name.
+#[must_use]
+pub fn about(name: &str) -> Option<&'static About> {
+    ALL.iter().copied().find(|about| about.name == name)
+}

@@ -1,0 +1,41 @@
+//! The value at a temperature depends on the side from which it was reached.
+//!
+//! Friction-like stress in die attach and package follows the temperature with a play: the branches
+//! up and down differ even after a long soak, the width does not depend on the rate, and a larger
+//! excursion wipes out the memory of smaller ones.
+
+use super::{About, Coefficients, Effect, Moment, Parameter};
+use crate::memory::Memory;
+use crate::real::Real;
+
+/// Number, names, formula, source.
+pub const ABOUT: About = About {
+    id: 4,
+    name: "thermal-hysteresis",
+    summary: "Package stress follows the temperature with a play, so the bias depends on whether a temperature was reached from below or from above.",
+    equation: "ΔB = w·(z − T), z the play operator of T with half width r",
+    source: "Prandtl–Ishlinskii model; ADXL354/355 data sheet on repeatability",
+    parameters: &[
+        Parameter { name: "bias_g_per_c", unit: "g/°C", start: 0.0, low: -0.01, high: 0.01 },
+        Parameter { name: "half_width_c", unit: "°C", start: 10.0, low: 0.2, high: 60.0 },
+    ],
+    channel: None,
+    needs: "the same temperatures reached from below and from above, each soaked",
+};
+
+/// ΔB = w·(z − T).
+pub struct ThermalHysteresis;
+
+impl<R: Real> Effect<R> for ThermalHysteresis {
+    fn coefficients(&self) -> usize {
+        ABOUT.parameters.len()
+    }
+
+    fn memory(&self, &[_, radius, ..]: &Coefficients<R>) -> Memory<R> {
+        Memory::Play { radius }
+    }
+
+    fn bias_g(&self, moment: &Moment<R>, &[w, ..]: &Coefficients<R>) -> R {
+        -(w * moment.departure)
+    }
+}

@@ -1,0 +1,127 @@
+//! From raw integers to the numbers that formulas use.
+
+use crate::real::Real;
+use protocol::limits::MAX_CHANNELS;
+use protocol::{Sample, Scaling, Status};
+
+/// Everything that a formula may look at, of one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Observation<R> {
+    /// Frequency difference from the calibration's zero, Hz. Subtracted as integers.
+    pub delta_f_offset_hz: R,
+    /// Frequency difference, Hz.
+    pub delta_f_hz: R,
+    /// Temperature from the calibration's zero, °C. Subtracted as integers.
+    pub temperature_offset_c: R,
+    /// Temperature, °C.
+    pub temperature_c: R,
+    /// Time since power-on, s.
+    pub power_on_s: R,
+    /// Calendar age, days; zero where it is unknown.
+    pub age_days: R,
+    /// Auxiliary channels in their units.
+    pub channels: [R; MAX_CHANNELS],
+}
+
+impl<R: Real> Observation<R> {
+    /// What `sample` shows, measured from the zeros of `scaling`.
+    #[must_use]
+    pub fn new(sample: &Sample, scaling: &Scaling) -> Self {
+        let delta_f_offset_uhz = sample.delta_f_uhz.saturating_sub(scaling.delta_f_zero_uhz);
+        let temperature_offset_uc = i64::from(sample.temperature_uc) - i64::from(scaling.temperature_zero_uc);
+        let microseconds = i64::try_from(sample.power_on_us).unwrap_or(i64::MAX);
+        Self {
+            delta_f_offset_hz: R::from_micro(delta_f_offset_uhz),
+            delta_f_hz: R::from_micro(sample.delta_f_uhz),
+            temperature_offset_c: R::from_micro(temperature_offset_uc),
+            temperature_c: R::from_micro(i64::from(sample.temperature_uc)),
+            power_on_s: R::from_micro(microseconds),
+            age_days: R::from_i64(i64::from(sample.age_s.unwrap_or(0))) * (R::ONE / R::from_f32(86_400.0)),
+            channels: sample.channels.map(R::from_micro),
+        }
+    }
+}
+
+/// The input gains and the first-order instrument of a [`Scaling`].
+#[derive(Clone, Copy, Debug)]
+pub struct Scale<R> {
+    x_per_hz: R,
+    t_per_c: R,
+    line_g: [R; 4],
+    output_g: R,
+}
+
+impl<R: Real> Scale<R> {
+    /// Reads the scaling.
+    #[must_use]
+    pub fn new(scaling: &Scaling) -> Self {
+        Self {
+            x_per_hz: R::from_f32(scaling.delta_f_gain_per_hz),
+            t_per_c: R::from_f32(scaling.temperature_gain_per_c),
+            line_g: scaling.line_g.map(R::from_f32),
+            output_g: R::from_f32(scaling.output_g),
+        }
+    }
+
+    /// The network's inputs (x, t) at these offsets from the zeros.
+    pub fn inputs(&self, delta_f_offset_hz: R, temperature_offset_c: R) -> [R; 2] {
+        [delta_f_offset_hz * self.x_per_hz, temperature_offset_c * self.t_per_c]
+    }
+
+    /// The static reading in g: the first-order instrument and the network's share.
+    pub fn reading_g(&self, x: R, t: R, network: R) -> R {
+        let [constant, by_x, by_t, by_xt] = self.line_g;
+        constant + by_x * x + by_t * t + by_xt * (x * t) + self.output_g * network
+    }
+}
+
+/// Keeps time between samples.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock {
+    max_gap_us: u64,
+    last: Option<Sample>,
+}
+
+/// What happened since the previous sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// There is none, or it is too long ago: start anew.
+    Anew,
+    /// Time stood still or ran backwards: keep the state.
+    Held,
+    /// So many µs went by.
+    Forward(u64),
+}
+
+impl Clock {
+    /// A clock that calls samples more than `max_gap_us` apart unrelated.
+    #[must_use]
+    pub const fn new(max_gap_us: u32) -> Self {
+        Self { max_gap_us: max_gap_us as u64, last: None }
+    }
+
+    /// Forgets the previous sample.
+    pub const fn restart(&mut self) {
+        self.last = None;
+    }
+
+    /// Takes the next sample: the step to it, the sample before it, and what to flag.
+    pub fn step(&mut self, sample: &Sample) -> (Step, Option<Sample>, Status) {
+        let Some(last) = self.last.replace(*sample) else {
+            return (Step::Anew, None, Status::empty());
+        };
+        let gap_us = sample.time_us.abs_diff(last.time_us);
+        let forward = sample.time_us > last.time_us;
+        match (forward, gap_us > self.max_gap_us) {
+            (true, false) => (Step::Forward(gap_us), Some(last), Status::empty()),
+            (true, true) => (Step::Anew, Some(last), Status::STALE),
+            // A sample out of order: the later of the two remains the one to measure from.
+            (false, false) => {
+                self.last = Some(last);
+                (Step::Held, Some(last), Status::TIME_REVERSED)
+            }
+            // The clock itself was set back: waiting for it to catch up would take for ever.
+            (false, true) => (Step::Anew, Some(last), Status::TIME_REVERSED),
+        }
+    }
+}

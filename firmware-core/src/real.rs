@@ -1,0 +1,100 @@
+//! The number that a formula is written in: `f32` on the device, `f64` in training.
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+/// A floating-point number whose every function is the same software on every target.
+pub trait Real:
+    Copy
+    + Debug
+    + PartialOrd
+    + Add<Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Send
+    + Sync
+    + 'static
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// The value of an `f32`, exactly.
+    fn from_f32(value: f32) -> Self;
+    /// The nearest value to an integer.
+    fn from_i64(value: i64) -> Self;
+    /// The nearest `f32`.
+    fn to_f32(self) -> f32;
+    /// eˣ.
+    #[must_use]
+    fn exp(self) -> Self;
+    /// eˣ − 1, accurate near zero.
+    #[must_use]
+    fn exp_m1(self) -> Self;
+    /// ln(1 + x), accurate near zero.
+    #[must_use]
+    fn ln_1p(self) -> Self;
+    /// √x.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+
+    /// The value within `low ..= high`.
+    #[must_use]
+    fn between(self, low: Self, high: Self) -> Self {
+        if self < low {
+            low
+        } else if self > high {
+            high
+        } else {
+            self
+        }
+    }
+
+    /// Millionths as a number of units.
+    fn from_micro(micro: i64) -> Self;
+}
+
+macro_rules! real {
+    ($type:ty, $exp:path, $exp_m1:path, $ln_1p:path, $sqrt:path, $micro:literal) => {
+        #[allow(clippy::cast_lossless, clippy::cast_precision_loss, clippy::cast_possible_truncation)]
+        impl Real for $type {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            fn from_f32(value: f32) -> Self {
+                value as Self
+            }
+            fn from_i64(value: i64) -> Self {
+                value as Self
+            }
+            fn to_f32(self) -> f32 {
+                self as f32
+            }
+            fn exp(self) -> Self {
+                $exp(self)
+            }
+            fn exp_m1(self) -> Self {
+                $exp_m1(self)
+            }
+            fn ln_1p(self) -> Self {
+                $ln_1p(self)
+            }
+            fn sqrt(self) -> Self {
+                $sqrt(self)
+            }
+            fn is_finite(self) -> bool {
+                <$type>::is_finite(self)
+            }
+            fn from_micro(micro: i64) -> Self {
+                micro as Self * $micro
+            }
+        }
+    };
+}
+
+real!(f32, libm::expf, libm::expm1f, libm::log1pf, libm::sqrtf, 1e-6);
+real!(f64, libm::exp, libm::expm1, libm::log1p, libm::sqrt, 1e-6);
