@@ -52,8 +52,8 @@ mod tests {
             let s = sigmoid(u);
             assert!((0.0..=1.0).contains(&s), "σ({u}) = {s}");
             assert_eq!(sigmoid(-u).to_bits(), (-s).to_bits());
-            // One unit in the last place of rounding is the most that monotony may lose.
-            assert!(s >= last - 6.0e-8, "σ({u}) = {s} after {last}");
+            // Near 1 the value's slope is less than its rounding: three roundings of one place each.
+            assert!(s >= last - 3.0 * f32::EPSILON / 2.0, "σ({u}) = {s} after {last}");
             last = s;
         }
     }

@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     fn example() -> Weights {
-        Weights::from_array(&core::array::from_fn(|i| libm::sinf(i as f32 * 1.7) * 0.8))
+        Weights::from_array(&core::array::from_fn(|i| libm::sinf((i as f32 + 1.0) * 1.7) * 0.8))
     }
 
     #[test]
