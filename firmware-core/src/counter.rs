@@ -49,12 +49,24 @@ pub enum CounterError<E> {
     Stopped,
     /// A count did not fit its register.
     Overflow,
+    /// More cycles than ticks: no input faster than the reference clock can be counted.
+    Impossible {
+        /// Cycles of the input.
+        cycles: u32,
+        /// Ticks of the reference clock during them.
+        ticks: u32,
+    },
 }
 
 impl<SPI: SpiDevice> Counter<SPI> {
     /// A counter whose reference clock runs at `reference_hz`.
     pub const fn new(device: SPI, reference_hz: u32) -> Self {
         Self { device, reference_hz }
+    }
+
+    /// The device on the bus, for whoever owns the hardware.
+    pub const fn device_mut(&mut self) -> &mut SPI {
+        &mut self.device
     }
 
     /// Asks the part who it is.
@@ -84,26 +96,26 @@ impl<SPI: SpiDevice> Counter<SPI> {
             return Err(CounterError::NotReady);
         }
         let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = words;
-        let f1_uhz = self.frequency_uhz(u32::from_be_bytes([a, b, c, d]), u32::from_be_bytes([e, f, g, h]));
-        let f2_uhz = self.frequency_uhz(u32::from_be_bytes([i, j, k, l]), u32::from_be_bytes([m, n, o, p]));
-        match (f1_uhz, f2_uhz) {
-            (Some(f1_uhz), Some(f2_uhz)) => Ok(Pair { f1_uhz, f2_uhz }),
-            _ => Err(CounterError::Stopped),
-        }
+        Ok(Pair {
+            f1_uhz: self.frequency_uhz(u32::from_be_bytes([a, b, c, d]), u32::from_be_bytes([e, f, g, h]))?,
+            f2_uhz: self.frequency_uhz(u32::from_be_bytes([i, j, k, l]), u32::from_be_bytes([m, n, o, p]))?,
+        })
     }
 
     /// cycles · f_ref / ticks, rounded to the nearest µHz by integer arithmetic.
-    fn frequency_uhz(&self, cycles: u32, ticks: u32) -> Option<u64> {
+    fn frequency_uhz(&self, cycles: u32, ticks: u32) -> Result<u64, CounterError<SPI::Error>> {
         if cycles == 0 {
-            return None;
+            return Err(CounterError::Stopped);
         }
-        let (cycles, ticks) = (u64::from(cycles), u64::from(ticks));
+        // From here on ticks ≥ cycles ≥ 1, so nothing overflows and nothing is divided by zero.
+        if ticks < cycles {
+            return Err(CounterError::Impossible { cycles, ticks });
+        }
+        let ticks = u64::from(ticks);
         // Whole hertz first: the product with a million would not fit 64 bits.
-        let scaled = cycles * u64::from(self.reference_hz);
-        let whole_hz = scaled.checked_div(ticks)?;
-        let rest = scaled.checked_rem(ticks)?;
-        let rest_uhz = (rest * 1_000_000 + ticks / 2).checked_div(ticks)?;
-        whole_hz.checked_mul(1_000_000)?.checked_add(rest_uhz)
+        let scaled = u64::from(cycles) * u64::from(self.reference_hz);
+        let (whole_hz, rest) = (scaled / ticks, scaled % ticks);
+        Ok(whole_hz * 1_000_000 + (rest * 1_000_000 + ticks / 2) / ticks)
     }
 
     fn read<const N: usize>(&mut self, register: u8) -> Result<[u8; N], CounterError<SPI::Error>> {

@@ -7,10 +7,10 @@ use crate::thermometer::{Thermometer, ThermometerError};
 use embedded_hal::i2c::I2c;
 use embedded_hal::spi::SpiDevice;
 use heapless::{String, Vec};
-use protocol::limits::{MAX_BLOB, MAX_CHUNK, MAX_LINE, MAX_NAME};
+use protocol::limits::{MAX_BLOB, MAX_CHUNK, MAX_NAME};
 use protocol::{
-    Blob, Decoder, Envelope, Identity, InstrumentState, Reading, Refusal, Request, Response, Sample, Status,
-    encode_response,
+    Blob, Decoder, Envelope, FrameError, Identity, InstrumentState, Line, Reading, Refusal, Request, Response, Sample,
+    Status, encode_response,
 };
 
 /// The two sensors of the instrument.
@@ -51,6 +51,8 @@ pub struct Instrument<SPI, I2C> {
     calibration: Option<Calibration>,
     incoming: Vec<u8, MAX_BLOB>,
     decoder: Decoder,
+    answered: u16,
+    answer: Line,
     readings: u32,
     raised: Status,
 }
@@ -69,6 +71,8 @@ impl<SPI: SpiDevice, I2C: I2c> Instrument<SPI, I2C> {
             calibration: None,
             incoming: Vec::new(),
             decoder: Decoder::new(),
+            answered: 0,
+            answer: Line::new(),
             readings: 0,
             raised: Status::empty(),
         }
@@ -80,14 +84,32 @@ impl<SPI: SpiDevice, I2C: I2c> Instrument<SPI, I2C> {
     }
 
     /// Takes one byte from the line; at the end of a request returns the answer's bytes.
-    /// Broken frames get no answer: the host repeats what was not answered.
-    pub fn receive(&mut self, byte: u8, time_us: u64) -> Option<Vec<u8, MAX_LINE>> {
-        let envelope: Envelope<Request> = match self.decoder.push(byte)? {
-            Ok(envelope) => envelope,
+    /// Broken frames get no answer: the host repeats what was not answered. A repeated request gets
+    /// the first answer again and is not carried out twice, or a lost answer would advance the memories.
+    pub fn receive(&mut self, byte: u8, time_us: u64) -> Option<&[u8]> {
+        let (sequence, request) = match self.decoder.push(byte)? {
+            Ok(Envelope { sequence, body }) => (sequence, Some(body)),
+            Err(FrameError::UnknownMessage { sequence }) => (sequence, None),
             Err(_) => return None,
         };
-        let body = self.answer(envelope.body, time_us);
-        encode_response(&Envelope { sequence: envelope.sequence, body }).ok()
+        if sequence == 0 || sequence != self.answered {
+            let body = match request {
+                Some(request) => self.answer(request, time_us),
+                None => Response::Refused(Refusal::UnknownRequest),
+            };
+            self.answer = encode_response(&Envelope { sequence, body }).ok()?;
+            self.answered = sequence;
+        }
+        Some(&self.answer)
+    }
+
+    /// Uses a stored calibration from now on; the one in use runs on unless this passes every check.
+    ///
+    /// # Errors
+    /// A [`Refusal`] that says why it can't be used.
+    pub fn load(&mut self, bytes: &[u8]) -> Result<(), Refusal> {
+        self.calibration = Some(check(bytes, &self.serial)?);
+        Ok(())
     }
 
     /// The answer to one request.

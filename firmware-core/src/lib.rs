@@ -22,6 +22,7 @@ pub mod activation;
 mod compensator;
 mod counter;
 pub mod effect;
+mod identity;
 mod instrument;
 mod memory;
 mod network;
@@ -31,6 +32,7 @@ mod thermometer;
 
 pub use compensator::{Compensator, LoadError, Output};
 pub use counter::{Counter, CounterError, Pair};
+pub use identity::serial_number;
 pub use instrument::{Instrument, Sensors};
 pub use memory::{Memory, State};
 pub use network::Network;

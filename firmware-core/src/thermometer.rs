@@ -44,6 +44,11 @@ impl<I2C: I2c> Thermometer<I2C> {
         Self { bus, address }
     }
 
+    /// The bus, for whoever owns the hardware.
+    pub const fn bus_mut(&mut self) -> &mut I2C {
+        &mut self.bus
+    }
+
     /// Asks the part who it is.
     ///
     /// # Errors

@@ -23,8 +23,11 @@ pub enum FrameError {
     Malformed,
     /// The bytes changed on the way.
     Checksum,
-    /// The frame is sound and its message unknown.
-    UnknownMessage,
+    /// The frame is sound and its message unknown to this version.
+    UnknownMessage {
+        /// The number to answer to.
+        sequence: u16,
+    },
 }
 
 impl fmt::Display for FrameError {
@@ -33,7 +36,7 @@ impl fmt::Display for FrameError {
             Self::TooLong => "frame longer than the protocol allows",
             Self::Malformed => "frame broken: bytes were lost",
             Self::Checksum => "frame corrupted",
-            Self::UnknownMessage => "message unknown to this version",
+            Self::UnknownMessage { .. } => "message unknown to this version",
         })
     }
 }
@@ -111,7 +114,7 @@ impl Decoder {
 
     /// Takes one byte; at the end of a frame returns its message or what was wrong with it.
     /// Empty frames (idle zeros) are skipped.
-    pub fn push<T: DeserializeOwned>(&mut self, byte: u8) -> Option<Result<T, FrameError>> {
+    pub fn push<T: DeserializeOwned>(&mut self, byte: u8) -> Option<Result<Envelope<T>, FrameError>> {
         if byte != 0 {
             self.unstuff(byte);
             return None;
@@ -142,7 +145,7 @@ impl Decoder {
         }
     }
 
-    fn finish<T: DeserializeOwned>(&self) -> Result<T, FrameError> {
+    fn finish<T: DeserializeOwned>(&self) -> Result<Envelope<T>, FrameError> {
         if let Some(error) = self.error {
             return Err(error);
         }
@@ -153,9 +156,11 @@ impl Decoder {
         if crc32(message) != u32::from_le_bytes(*checksum) {
             return Err(FrameError::Checksum);
         }
-        match postcard::take_from_bytes(message) {
-            Ok((message, [])) => Ok(message),
-            _ => Err(FrameError::UnknownMessage),
+        // The number first: a message from the future must still be refused by its number.
+        let (sequence, body) = postcard::take_from_bytes(message).map_err(|_| FrameError::Malformed)?;
+        match postcard::take_from_bytes(body) {
+            Ok((body, [])) => Ok(Envelope { sequence, body }),
+            _ => Err(FrameError::UnknownMessage { sequence }),
         }
     }
 }

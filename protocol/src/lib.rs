@@ -24,7 +24,7 @@ mod weights;
 
 pub use blob::{Blob, BlobError, Domain, Scaling, Term, Timing};
 pub use checksum::crc32;
-pub use frame::{Decoder, FrameError, encode_frame, encode_request, encode_response};
+pub use frame::{Decoder, FrameError, Line, encode_frame, encode_request, encode_response};
 pub use message::{Envelope, Identity, InstrumentState, Refusal, Request, Response};
 pub use reading::{Reading, Status};
 pub use sample::Sample;

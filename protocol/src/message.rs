@@ -4,13 +4,15 @@ use crate::blob::BlobError;
 use crate::limits::{MAX_CHUNK, MAX_NAME};
 use crate::reading::{Reading, Status};
 use crate::sample::Sample;
+use core::fmt;
 use heapless::{String, Vec};
 use serde::{Deserialize, Serialize};
 
 /// What travels in a frame: a message and the number that ties an answer to its question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Envelope<T> {
-    /// Chosen by the host, repeated by the instrument.
+    /// Chosen by the host, repeated by the instrument. A request with the number of the one before
+    /// is a repetition: it is answered again and not carried out again. 0 is never a repetition.
     pub sequence: u16,
     /// The message.
     pub body: T,
@@ -110,6 +112,23 @@ pub enum Refusal {
     /// A message that this firmware doesn't know.
     UnknownRequest,
 }
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Offset(offset) => write!(f, "a piece of the calibration is missing from byte {offset} on"),
+            Self::NotABlob => write!(f, "these bytes are no calibration blob"),
+            Self::Truncated => write!(f, "the calibration ends too early"),
+            Self::Layout(found) => write!(f, "blob layout {found} is unknown to its firmware"),
+            Self::Checksum => write!(f, "the calibration's bytes changed on the way"),
+            Self::Unusable => write!(f, "its firmware can't run this calibration"),
+            Self::OtherSerial => write!(f, "the calibration belongs to another sensor"),
+            Self::UnknownRequest => write!(f, "its firmware doesn't know this request"),
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}
 
 impl From<BlobError> for Refusal {
     fn from(error: BlobError) -> Self {

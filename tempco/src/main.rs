@@ -1,2 +1,37 @@
-//! .
-fn main() {}
+//! Temperature and error compensation for resonant accelerometers: the command line.
+//!
+//! A command parses, calls the library and renders; it computes nothing.
+
+mod calibration_region;
+mod command;
+mod data;
+mod failure;
+mod progress;
+mod render;
+mod table;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Temperature and error compensation for resonant accelerometers.
+///
+/// Train a compensation model from calibration measurements, see where it fails, and put it on the
+/// sensor's microcontroller with the same bits that this computer computed.
+///
+/// Exit codes: 0 yes, 1 the answer is no (verify differs, a limit is exceeded), 2 could not.
+#[derive(Parser)]
+#[command(name = "tempco", version, after_help = "Start with:  tempco demo")]
+struct Cli {
+    #[command(subcommand)]
+    command: command::Command,
+}
+
+fn main() -> ExitCode {
+    match Cli::parse().command.run() {
+        Ok(answer) => answer.into(),
+        Err(failure) => {
+            anstream::eprintln!("{failure}");
+            ExitCode::from(2)
+        }
+    }
+}

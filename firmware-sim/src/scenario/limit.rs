@@ -1,5 +1,7 @@
 //! The limits that every number of a scenario is held to, and the sentence that a violation becomes.
 
+use std::fmt::Display;
+
 /// A number that cannot be used: which one, what it is, and what it may be.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{field}` is {found}; it must be {expected}")]
@@ -15,7 +17,7 @@ pub struct Fault {
 impl Fault {
     /// A violation that no range describes.
     #[must_use]
-    pub fn new(field: &str, found: impl ToString, expected: &str) -> Self {
+    pub fn new(field: &str, found: &dyn Display, expected: &str) -> Self {
         Self { field: field.into(), found: found.to_string(), expected: expected.into() }
     }
 }
@@ -26,7 +28,7 @@ pub fn within(field: &str, value: f64, min: f64, max: f64) -> Result<(), Fault> 
     if (min..=max).contains(&value) {
         return Ok(());
     }
-    Err(Fault::new(field, value, &format!("between {min} and {max}")))
+    Err(Fault::new(field, &value, &format!("between {min} and {max}")))
 }
 
 /// # Errors
@@ -35,14 +37,14 @@ pub fn positive(field: &str, value: f64) -> Result<(), Fault> {
     if value > 0.0 && value.is_finite() {
         return Ok(());
     }
-    Err(Fault::new(field, value, "above zero"))
+    Err(Fault::new(field, &value, "above zero"))
 }
 
 /// # Errors
 /// Unless the list has an entry and every entry lies between `min` and `max`.
 pub fn each_within(field: &str, values: &[f64], min: f64, max: f64) -> Result<(), Fault> {
     if values.is_empty() {
-        return Err(Fault::new(field, "an empty list", "a list with at least one entry"));
+        return Err(Fault::new(field, &"an empty list", "a list with at least one entry"));
     }
     values.iter().try_for_each(|value| within(field, *value, min, max))
 }

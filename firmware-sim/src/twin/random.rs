@@ -56,6 +56,16 @@ impl Random {
         (self.bits() % bound as u64) as usize
     }
 
+    /// Between two positive numbers, evenly on a logarithmic scale.
+    pub fn log_between(&mut self, low: f64, high: f64) -> f64 {
+        low * (high / low).powf(self.uniform())
+    }
+
+    /// −1 or +1.
+    pub fn sign(&mut self) -> f64 {
+        if self.bits() & 1 == 0 { -1.0 } else { 1.0 }
+    }
+
     /// Puts `items` into random order (Fisher–Yates).
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {

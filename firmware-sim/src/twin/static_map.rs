@@ -30,8 +30,7 @@ impl StaticMap {
     pub fn new(truth: &Truth) -> Self {
         let fork = |f0_hz: f64, sign: f64| {
             let tcf = (truth.tcf_ppm_per_k + sign * truth.tcf_difference_ppm_per_k / 2.0) * 1e-6;
-            let bend =
-                truth.stress_quadratic_ppb_per_k2 + sign * truth.stress_quadratic_difference_ppb_per_k2 / 2.0;
+            let bend = truth.stress_quadratic_ppb_per_k2 + sign * truth.stress_quadratic_difference_ppb_per_k2 / 2.0;
             let mean_hz = f64::midpoint(truth.f1_hz, truth.f2_hz);
             let mismatch = sign * truth.scale_factor_mismatch_pct / 200.0;
             Fork {
@@ -51,12 +50,12 @@ impl StaticMap {
         self.forks_apart_hz(acceleration_g, [temperature_c; 2], 1.0)
     }
 
-    /// Both frequencies when the forks have temperatures of their own and the force sensitivity is `scale` times nominal, Hz.
+    /// Both frequencies when the forks have temperatures of their own and the force sensitivity is `scale` times
+    /// nominal, Hz.
     #[must_use]
     pub fn forks_apart_hz(&self, acceleration_g: f64, temperatures_c: [f64; 2], scale: f64) -> [f64; 2] {
-        let frequency = |i: usize| {
-            self.forks[i].frequency_hz(temperatures_c[i] - self.reference_c, scale * acceleration_g)
-        };
+        let frequency =
+            |i: usize| self.forks[i].frequency_hz(temperatures_c[i] - self.reference_c, scale * acceleration_g);
         [frequency(0), frequency(1)]
     }
 

@@ -8,10 +8,10 @@ use crate::scenario::limit::{Fault, positive, within};
 
 /// All parameters of the device, without any switchable effect.
 ///
-/// Two double-ended tuning forks hang on one proof mass, one pulled and one pushed by acceleration:
-/// `f_i = f_i0·√(1 + e1θ + e2θ² + h1_iθ + h2_iθ² ± s_i·a)` with `θ = T − 25 °C`. `e` is silicon's Young modulus
-/// (Jaakkola et al., arXiv 1401.1363), `h` the axial stress from the package (Huang et al., Sensors & Transducers 2013).
-/// The default reproduces the device of Huang, Jiang, Zhao, Ding, Micromachines 2022, 13(7), 1054, test data set 2.
+/// Two double-ended tuning forks hang on one proof mass, one pulled and one pushed by acceleration: `f_i = f_i0·√(1 +
+/// e1θ + e2θ² + h1_iθ + h2_iθ² ± s_i·a)` with `θ = T − 25 °C`. `e` is silicon's Young modulus (Jaakkola et al., arXiv
+/// 1401.1363), `h` the axial stress from the package (Huang et al., Sensors & Transducers 2013). The default
+/// reproduces the device of Huang, Jiang, Zhao, Ding, Micromachines 2022, 13(7), 1054, test data set 2.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Truth {

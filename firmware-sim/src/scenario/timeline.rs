@@ -1,0 +1,136 @@
+//! The scenario on the calendar: every repetition of every run with its beginning and its segments.
+//!
+//! Apart from the simulation so that a scenario can be refused, and its length told, before anything is simulated.
+
+use crate::scenario::programme::{Programme, Segment};
+use crate::scenario::{Run, Scenario, ScenarioError};
+use crate::twin::random::Random;
+
+/// Seconds in a day.
+pub(crate) const DAY_S: f64 = 86_400.0;
+/// The most samples that a scenario may ask for: about 2 GB in memory.
+const MAX_ROWS: u64 = 10_000_000;
+
+/// All runs of a scenario in order of time.
+#[derive(Clone, Debug)]
+pub struct Timeline<'a> {
+    /// The runs, repetitions spelt out.
+    pub runs: Vec<PlannedRun<'a>>,
+}
+
+/// One run with its place on the calendar.
+#[derive(Clone, Debug)]
+pub struct PlannedRun<'a> {
+    /// Name, unique.
+    pub name: String,
+    /// What the scenario says about it.
+    pub run: &'a Run,
+    /// Age of the device when it begins, s.
+    pub begins_s: f64,
+    /// How many steps pass between kept samples.
+    pub every: u64,
+    /// What happens.
+    pub segments: Vec<Segment>,
+}
+
+impl<'a> Timeline<'a> {
+    /// Lays the scenario out; `seed` decides the random orders.
+    ///
+    /// # Errors
+    /// If runs overlap, share a name, keep nothing, or keep too much.
+    pub fn of(scenario: &'a Scenario, seed: u64) -> Result<Self, ScenarioError> {
+        let mut runs: Vec<PlannedRun> = Vec::new();
+        for run in &scenario.run {
+            for repetition in 0..run.common.repeat {
+                let ends_s = runs.last().map(|run| run.begins_s + run.duration_s());
+                let begins_s = begins_s(scenario, run, repetition, ends_s)?;
+                let planned = PlannedRun::new(scenario, run, repetition, begins_s, seed ^ runs.len() as u64);
+                planned.check(scenario.step_s)?;
+                if runs.iter().any(|other| other.name == planned.name) {
+                    return Err(ScenarioError::SameName { name: planned.name });
+                }
+                runs.push(planned);
+            }
+        }
+        let timeline = Self { runs };
+        match timeline.rows(scenario.step_s) {
+            0 => Err(ScenarioError::NoRun),
+            rows if rows > MAX_ROWS => Err(ScenarioError::TooManyRows { rows, limit: MAX_ROWS }),
+            _ => Ok(timeline),
+        }
+    }
+
+    /// How many samples the campaign will have.
+    #[must_use]
+    pub fn rows(&self, step_s: f64) -> u64 {
+        let kept = |run: &PlannedRun| -> u64 {
+            run.segments.iter().filter(|s| s.recorded).map(|s| s.steps(step_s) / run.every).sum()
+        };
+        self.runs.iter().map(kept).sum()
+    }
+
+    /// Simulated time within runs, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.runs.iter().map(PlannedRun::duration_s).sum()
+    }
+}
+
+/// When a repetition begins: at its stated age, or one pause after what was before it.
+fn begins_s(scenario: &Scenario, run: &Run, repetition: u32, ends_s: Option<f64>) -> Result<f64, ScenarioError> {
+    let stated_days = run.common.age_days.filter(|_| repetition == 0);
+    let Some(begins_days) = stated_days else {
+        return Ok(ends_s.map_or(0.0, |ends_s| ends_s + scenario.rig.pause_h * 3600.0));
+    };
+    let begins_s = begins_days * DAY_S;
+    match ends_s {
+        Some(ends_s) if ends_s > begins_s => {
+            Err(ScenarioError::Overlap { run: run.name(repetition), begins_days, ends_days: ends_s / DAY_S })
+        }
+        _ => Ok(begins_s),
+    }
+}
+
+impl<'a> PlannedRun<'a> {
+    fn new(scenario: &Scenario, run: &'a Run, repetition: u32, begins_s: f64, seed: u64) -> Self {
+        let mut programme = Programme::new(&scenario.device, &scenario.rig, run.common.mount_rotation_deg);
+        run.kind.write(&mut programme, &mut Random::stream(seed, "order", 0));
+        Self {
+            name: run.name(repetition),
+            run,
+            begins_s,
+            every: ((run.common.record_every_s / scenario.step_s).round() as u64).max(1),
+            segments: programme.segments(),
+        }
+    }
+
+    /// Length of the run, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.segments.iter().map(|segment| segment.duration_s).sum()
+    }
+
+    fn check(&self, step_s: f64) -> Result<(), ScenarioError> {
+        let shortest = self.segments.iter().filter(|s| s.recorded).min_by_key(|s| s.steps(step_s));
+        match shortest {
+            Some(segment) if segment.steps(step_s) < self.every => {
+                Err(ScenarioError::KeepsNothing { run: self.name.clone(), part_s: segment.duration_s })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Segment {
+    /// How many steps it takes.
+    #[must_use]
+    pub fn steps(&self, step_s: f64) -> u64 {
+        (self.duration_s / step_s).round() as u64
+    }
+
+    /// The set point after `passed` of its time, a fraction, °C.
+    #[must_use]
+    pub fn setpoint_c(&self, passed: f64) -> f64 {
+        self.from_c + (self.to_c - self.from_c) * passed
+    }
+}

@@ -1,0 +1,185 @@
+//! The effects that can be switched on: one file each, one list of them here.
+//!
+//! An effect acts in one of two places, which is what tells effects apart when both frequencies are recorded: on what
+//! reaches the forks ([`Effect::act`]), or on the oscillating forks themselves ([`Effect::pull`]). The list is in the
+//! order of the signal path.
+
+use serde::{Deserialize, Serialize};
+
+use crate::scenario::limit::Fault;
+use crate::scenario::{Rig, ScenarioError};
+use crate::twin::conditions::{Conditions, Forks, Input};
+use crate::twin::random::Random;
+use crate::twin::static_map::StaticMap;
+use crate::twin::truth::Truth;
+
+/// An effect while it is simulated: parameters and memory.
+pub trait Effect {
+    /// A run begins, power comes on: draw what is drawn once a run.
+    fn begin_run(&mut self) {}
+
+    /// `dt_s` seconds have passed and led to `now`; also called while nothing is recorded and between runs.
+    fn advance(&mut self, _now: &Conditions, _dt_s: f64) {}
+
+    /// Acts on what reaches the forks.
+    fn act(&self, _now: &Conditions, _input: &mut Input) {}
+
+    /// Acts on the oscillating forks.
+    fn pull(&self, _now: &Conditions, _forks: &mut Forks) {}
+}
+
+/// The parameters of an effect: what a scenario writes under `[effects.NAME]`.
+pub trait Switch: Default {
+    /// The effect's name.
+    const NAME: &'static str;
+
+    /// # Errors
+    /// The first parameter that the effect cannot have.
+    fn check(&self) -> Result<(), Fault>;
+
+    /// The same effect, so much stronger that its influence on the reading grows by about `factor`.
+    #[must_use]
+    fn scaled(&self, factor: f64) -> Self;
+
+    /// The same effect in another device: sign, time constants and places as the literature's range allows.
+    #[must_use]
+    fn varied(&self, random: &mut Random) -> Self;
+
+    /// The effect at the moment the device was built.
+    fn start(&self, setting: &Setting) -> Box<dyn Effect>;
+}
+
+/// What an effect may know when it starts.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting<'a> {
+    /// The device.
+    pub truth: &'a Truth,
+    /// The device without effects, as a function.
+    pub map: &'a StaticMap,
+    /// The laboratory.
+    pub rig: &'a Rig,
+    /// The seed of the simulation.
+    pub seed: u64,
+}
+
+impl Setting<'_> {
+    /// The effect's own stream of random numbers.
+    fn random(&self, name: &str) -> Random {
+        Random::stream(self.seed, name, 0)
+    }
+
+    /// K1 at the reference temperature, by which an effect stated as bias becomes a frequency, Hz/µg.
+    fn hz_per_ug(&self) -> f64 {
+        self.map.scale_factor_hz_per_g(self.truth.reference_temperature_c) * 1e-6
+    }
+}
+
+/// Declares every effect once: name in the file, module, field, and parameters.
+macro_rules! effects {
+    ($($name:literal $module:ident $parameters:ident;)*) => {
+        $(mod $module; pub use $module::$parameters;)*
+
+        /// The effects that are switched on. An empty `[effects.NAME]` takes the literature's typical size.
+        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct Effects {
+            $(
+                #[doc = concat!("`[effects.", $name, "]`")]
+                #[serde(rename = $name, default, skip_serializing_if = "Option::is_none")]
+                pub $module: Option<$parameters>,
+            )*
+        }
+
+        impl Effects {
+            /// The names of all effects, in the order of the signal path.
+            pub const NAMES: &[&str] = &[$($name),*];
+
+            /// The names of the effects that are switched on.
+            #[must_use]
+            pub fn active(&self) -> Vec<&'static str> {
+                let mut names = Vec::new();
+                $(if self.$module.is_some() { names.push($parameters::NAME); })*
+                names
+            }
+
+            /// Switches an effect on with its typical size times `factor`; `false` if there is none of that name.
+            pub fn switch_on(&mut self, name: &str, factor: f64) -> bool {
+                match name {
+                    $($name => self.$module = Some($parameters::default().scaled(factor)),)*
+                    _ => return false,
+                }
+                true
+            }
+
+            /// Switches an effect on as another device might have it: `seed` decides sign, time constants and places.
+            pub fn switch_on_varied(&mut self, name: &str, factor: f64, seed: u64) -> bool {
+                let random = &mut Random::stream(seed, name, 1);
+                match name {
+                    $($name => self.$module = Some($parameters::default().varied(random).scaled(factor)),)*
+                    _ => return false,
+                }
+                true
+            }
+
+            /// # Errors
+            /// The first parameter that an effect cannot have.
+            pub fn check(&self) -> Result<(), ScenarioError> {
+                $(if let Some(parameters) = &self.$module {
+                    parameters.check().map_err(|fault| place($name, fault))?;
+                })*
+                Ok(())
+            }
+
+            /// All effects that are switched on, at the moment the device was built.
+            pub(crate) fn start(&self, setting: &Setting) -> Vec<Box<dyn Effect>> {
+                let mut started = Vec::new();
+                $(if let Some(parameters) = &self.$module { started.push(parameters.start(setting)); })*
+                started
+            }
+        }
+    };
+}
+
+effects! {
+    "thermal-lag" thermal_lag ThermalLag;
+    "warm-up" warm_up WarmUp;
+    "thermal-gradient" thermal_gradient ThermalGradient;
+    "misalignment" misalignment Misalignment;
+    "cross-axis" cross_axis CrossAxis;
+    "second-order" second_order SecondOrder;
+    "third-order" third_order ThirdOrder;
+    "g-hysteresis" g_hysteresis GHysteresis;
+    "vibration-rectification" vibration_rectification VibrationRectification;
+    "turn-on" turn_on TurnOn;
+    "aging" aging Aging;
+    "scale-factor-aging" scale_factor_aging ScaleFactorAging;
+    "x-tide" x_tide Tide;
+    "x-odd-quadratic" x_odd_quadratic OddQuadratic;
+    "x-magnetic" x_magnetic Magnetic;
+    "x-annealing-step" x_annealing_step AnnealingStep;
+    "x-telegraph" x_telegraph Telegraph;
+    "x-periodic-interference" x_periodic_interference PeriodicInterference;
+    "thermal-hysteresis" thermal_hysteresis ThermalHysteresis;
+    "stress-relaxation" stress_relaxation StressRelaxation;
+    "pressure" pressure Pressure;
+    "humidity" humidity Humidity;
+    "supply-voltage" supply_voltage SupplyVoltage;
+    "x-phase-error" x_phase_error PhaseError;
+    "mode-crossing" mode_crossing ModeCrossing;
+    "lock-in" lock_in LockIn;
+    "reference-clock" reference_clock ReferenceClock;
+}
+
+/// How much of a common shift by package stress shows in the difference of the forks: 1–5 % for a symmetric die.
+const STRESS_MISMATCH: f64 = 0.03;
+/// How much of a common shift by drive amplitude, polarisation or charge shows in the difference of the forks.
+const DRIVE_MISMATCH: f64 = 0.1;
+
+fn place(name: &str, fault: Fault) -> ScenarioError {
+    ScenarioError::Part { part: format!("[effects.{name}]"), fault }
+}
+
+#[cfg(test)]
+mod bench;
+#[cfg(test)]
+mod tests;

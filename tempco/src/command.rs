@@ -1,0 +1,41 @@
+//! One verb, one file.
+
+mod compare;
+mod demo;
+mod effects;
+mod export;
+mod inspect;
+mod simulate;
+mod train;
+mod verify;
+
+use crate::failure::{Answer, Failure};
+use clap::Subcommand;
+
+/// The verbs, in the order in which a calibration uses them.
+#[derive(Subcommand)]
+pub enum Command {
+    Demo(demo::Demo),
+    Simulate(simulate::Simulate),
+    Train(train::Train),
+    Compare(compare::Compare),
+    Effects(effects::Effects),
+    Export(export::Export),
+    Inspect(inspect::Inspect),
+    Verify(verify::Verify),
+}
+
+impl Command {
+    pub fn run(&self) -> Result<Answer, Failure> {
+        match self {
+            Self::Demo(command) => command.run(),
+            Self::Simulate(command) => command.run(),
+            Self::Train(command) => command.run(),
+            Self::Compare(command) => command.run(),
+            Self::Effects(command) => command.run(),
+            Self::Export(command) => command.run(),
+            Self::Inspect(command) => command.run(),
+            Self::Verify(command) => command.run(),
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! `tempco effects`
+
+use crate::failure::{Answer, Failure};
+use clap::Args;
+use firmware_core::effect::{ALL, About, about};
+use std::fmt::Write;
+
+/// Lists the physical effects that a model can contain, or explains one.
+#[derive(Args)]
+#[command(after_help = "Example:  tempco effects thermal-lag")]
+pub struct Effects {
+    /// Effect to explain
+    name: Option<String>,
+}
+
+impl Effects {
+    pub fn run(&self) -> Result<Answer, Failure> {
+        match &self.name {
+            None => {
+                for about in ALL {
+                    anstream::println!("{:20} {}", about.name, about.summary);
+                }
+            }
+            Some(name) => {
+                let about = about(name).ok_or_else(|| {
+                    Failure::new(format_args!("there is no effect named `{name}`")).help("`tempco effects` lists them")
+                })?;
+                anstream::print!("{}", explain(about));
+            }
+        }
+        Ok(Answer::Yes)
+    }
+}
+
+fn explain(about: &About) -> String {
+    let mut text = format!("{} (number {})\n\n  {}\n\n", about.name, about.id, about.summary);
+    let _ = writeln!(text, "  equation  {}\n  source    {}\n  needs     {}", about.equation, about.source, about.needs);
+    if let Some(channel) = about.channel {
+        let _ = writeln!(text, "  channel   {channel}");
+    }
+    for parameter in about.parameters {
+        let _ = writeln!(
+            text,
+            "  parameter {} [{}], {} … {}",
+            parameter.name, parameter.unit, parameter.low, parameter.high
+        );
+    }
+    text
+}

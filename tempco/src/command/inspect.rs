@@ -1,0 +1,108 @@
+//! `tempco inspect FILE`
+
+use crate::data::Data;
+use crate::failure::{Answer, Failure};
+use crate::table::Table;
+use clap::Args;
+use firmware_core::Compensator;
+use firmware_core::effect::ALL;
+use protocol::Blob;
+use std::path::Path;
+use trainer::campaign::Campaign;
+use trainer::model::Model;
+
+/// Shows what a blob, an Intel HEX file, a model or a campaign contains, and whether a device would take it.
+#[derive(Args)]
+#[command(after_help = "Example:  tempco inspect calibration.bin")]
+pub struct Inspect {
+    #[command(flatten)]
+    data: Data,
+}
+
+impl Inspect {
+    pub fn run(&self) -> Result<Answer, Failure> {
+        let file = self.data.files.first().ok_or_else(|| Failure::new("name a file"))?;
+        match file.extension().and_then(|extension| extension.to_str()) {
+            Some("bin") => blob(&std::fs::read(file).map_err(|error| Failure::io(file, &error))?),
+            Some("hex") => blob(&read_hex(file)?),
+            Some("toml") => {
+                let model = Model::read(file)?;
+                anstream::println!("{}", model.to_text());
+                blob(&model.to_bytes()?)
+            }
+            _ => {
+                campaign(&self.data.read()?);
+                Ok(Answer::Yes)
+            }
+        }
+    }
+}
+
+fn read_hex(file: &Path) -> Result<Vec<u8>, Failure> {
+    let text = std::fs::read_to_string(file).map_err(|error| Failure::io(file, &error))?;
+    let mut bytes = Vec::new();
+    for (line, record) in ihex::Reader::new(&text).enumerate() {
+        match record.map_err(|error| Failure::new(format_args!("{}:{}: {error}", file.display(), line + 1)))? {
+            ihex::Record::Data { value, .. } => bytes.extend(value),
+            _ => continue,
+        }
+    }
+    Ok(bytes)
+}
+
+fn blob(bytes: &[u8]) -> Result<Answer, Failure> {
+    let blob = match Blob::from_bytes(bytes) {
+        Ok(blob) => blob,
+        Err(error) => {
+            anstream::println!("A device would refuse this: {error}.");
+            return Ok(Answer::No);
+        }
+    };
+    let hex: String = blob.provenance.iter().map(|byte| format!("{byte:02x}")).collect();
+    let serial = if blob.serial.is_empty() { "any sensor" } else { blob.serial.as_str() };
+    let ((f_low, f_high), (t_low, t_high)) = (blob.domain.delta_f_uhz, blob.domain.temperature_uc);
+    anstream::println!("Calibration {hex} for {serial}, layout {}, {} bytes", Blob::LAYOUT, bytes.len());
+    anstream::println!(
+        "  calibrated from {:.3} to {:.3} Hz and from {:.2} to {:.2} °C",
+        f_low as f64 * 1e-6,
+        f_high as f64 * 1e-6,
+        f64::from(t_low) * 1e-6,
+        f64::from(t_high) * 1e-6
+    );
+    for term in &blob.terms {
+        let name = ALL.iter().find(|about| about.id == term.effect).map_or("unknown effect", |about| about.name);
+        anstream::println!("  effect {name} {:?}", term.parameters.as_slice());
+    }
+    Ok(match Compensator::load(&blob) {
+        Ok(_) => {
+            anstream::println!("A device would take it.");
+            Answer::Yes
+        }
+        Err(error) => {
+            anstream::println!("A device would refuse this: {error}.");
+            Answer::No
+        }
+    })
+}
+
+fn campaign(campaign: &Campaign) {
+    let mut table = Table::new(["run", "kind", "samples", "every s", "hours", "from °C", "to °C", "levels"]);
+    for run in &campaign.runs {
+        let temperatures = || run.rows.iter().map(|row| f64::from(row.sample.temperature_uc) * 1e-6);
+        let alone = Campaign::new(vec![run.clone()], campaign.channels.clone(), campaign.quantity.clone());
+        table.row([
+            run.name.clone(),
+            run.kind.clone(),
+            run.rows.len().to_string(),
+            run.sample_interval_s().map_or_else(|| "–".to_owned(), |interval| format!("{interval:.2}")),
+            format!("{:.2}", run.duration_s() / 3600.0),
+            format!("{:.1}", temperatures().fold(f64::MAX, f64::min)),
+            format!("{:.1}", temperatures().fold(f64::MIN, f64::max)),
+            alone.levels(0.01).len().to_string(),
+        ]);
+    }
+    anstream::print!("{table}");
+    if !campaign.channels.is_empty() {
+        anstream::println!("Auxiliary channels: {}", campaign.channels.join(", "));
+    }
+}

@@ -1,0 +1,89 @@
+//! Options that several commands share: which measurements, which runs.
+
+use crate::failure::Failure;
+use clap::Args;
+use std::path::PathBuf;
+use trainer::campaign::{Campaign, HoldOut, Measured, ReadOptions};
+
+/// Where the measurements are and how to read them.
+#[derive(Args)]
+pub struct Data {
+    /// Campaign: CSV files, or folders of them
+    #[arg(required = true, value_name = "DATA")]
+    pub files: Vec<PathBuf>,
+
+    /// Reads a column under another name, with a factor and an offset if need be: `delta_f_hz=FreqDiff`, `time_s=t_ms*0.001`
+    #[arg(long, value_name = "NAME=COLUMN")]
+    pub map: Vec<String>,
+
+    /// Column of the signal, when it is not a frequency difference
+    #[arg(long, value_name = "COLUMN", requires = "signal_unit")]
+    pub signal: Option<String>,
+
+    /// Unit of the signal
+    #[arg(long, value_name = "UNIT", requires = "signal")]
+    pub signal_unit: Option<String>,
+
+    /// Column of the reference, when it is not an acceleration in g
+    #[arg(long, value_name = "COLUMN", requires = "reference_unit")]
+    pub reference: Option<String>,
+
+    /// Unit of the reference
+    #[arg(long, value_name = "UNIT", requires = "reference")]
+    pub reference_unit: Option<String>,
+
+    /// Reference of every row, for a sensor that lies still and has no column for it
+    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    pub constant_reference: Option<f64>,
+
+    /// Keeps only these auxiliary channels, in this order
+    #[arg(long, value_name = "COLUMN,…", value_delimiter = ',')]
+    pub channels: Option<Vec<String>>,
+
+    /// Leaves these columns unread
+    #[arg(long, value_name = "COLUMN,…", value_delimiter = ',')]
+    pub ignore: Vec<String>,
+}
+
+impl Data {
+    pub fn read(&self) -> Result<Campaign, Failure> {
+        let mut options = ReadOptions {
+            signal: measured(self.signal.as_ref(), self.signal_unit.as_ref()),
+            reference: measured(self.reference.as_ref(), self.reference_unit.as_ref()),
+            channels: self.channels.clone(),
+            ignore: self.ignore.clone(),
+            constant_reference: self.constant_reference,
+            ..ReadOptions::default()
+        };
+        for pair in &self.map {
+            let (name, column) = pair.split_once('=').ok_or_else(|| {
+                Failure::new(format_args!("--map {pair}: expected NAME=COLUMN"))
+                    .help("write the name that tempco uses first, as in --map delta_f_hz=FreqDiff")
+            })?;
+            options.map.push((name.trim().to_owned(), column.trim().to_owned()));
+        }
+        Ok(Campaign::read(&self.files, &options)?)
+    }
+}
+
+fn measured(column: Option<&String>, unit: Option<&String>) -> Option<Measured> {
+    Some(Measured { column: column?.clone(), unit: unit?.clone() })
+}
+
+/// Which runs to keep from training.
+#[derive(Args)]
+pub struct HeldOut {
+    /// Runs to keep from training, or `none`; without it the last run of each kind that has two or more
+    #[arg(long, value_name = "RUN,…", value_delimiter = ',')]
+    pub hold_out: Option<Vec<String>>,
+}
+
+impl HeldOut {
+    pub fn choice(&self) -> HoldOut {
+        match &self.hold_out {
+            None => HoldOut::LastOfEachKind,
+            Some(names) if names.as_slice() == ["none"] => HoldOut::None,
+            Some(names) => HoldOut::Named(names.clone()),
+        }
+    }
+}

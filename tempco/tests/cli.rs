@@ -1,0 +1,124 @@
+//! The command line as a user meets it: each verb on the checked-in campaign, and what it says when it can't.
+
+use assert_cmd::Command;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+const SMALL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/campaigns/small.csv");
+const SMALL_SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/campaigns/small.toml");
+
+fn tempco(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tempco"));
+    command.current_dir(folder).env("NO_COLOR", "1");
+    command
+}
+
+fn stdout(command: &mut Command) -> String {
+    let output = command.assert().success().get_output().stdout.clone();
+    String::from_utf8(output).expect("text")
+}
+
+fn stderr_of(command: &mut Command, code: i32) -> String {
+    let output = command.assert().code(code).get_output().stderr.clone();
+    String::from_utf8(output).expect("text")
+}
+
+/// A folder with a model of the small campaign.
+fn trained() -> TempDir {
+    let folder = TempDir::new().expect("a folder");
+    tempco(folder.path()).args(["train", SMALL, "-o", "model.toml", "--restarts", "4"]).assert().success();
+    folder
+}
+
+#[test]
+fn the_checked_in_campaign_is_what_its_scenario_gives() {
+    let folder = TempDir::new().expect("a folder");
+    stdout(tempco(folder.path()).args(["simulate", SMALL_SCENARIO, "--seed", "1", "-o", "again.csv"]));
+    assert!(fs::read(folder.path().join("again.csv")).expect("written") == fs::read(SMALL).expect("checked in"));
+}
+
+#[test]
+fn the_same_campaign_and_seed_give_the_same_model_byte_for_byte_on_one_thread_and_on_many() {
+    let folder = TempDir::new().expect("a folder");
+    for (file, threads) in [("one.toml", "1"), ("many.toml", "3")] {
+        let mut command = tempco(folder.path());
+        command.args(["train", SMALL, "-o", file, "--restarts", "4"]).env("RAYON_NUM_THREADS", threads);
+        command.assert().success();
+    }
+    let read = |file| fs::read(folder.path().join(file)).expect("written");
+    assert!(read("one.toml") == read("many.toml"));
+}
+
+#[test]
+fn a_model_goes_from_training_over_export_to_a_verified_instrument() {
+    let folder = trained();
+    let text = stdout(tempco(folder.path()).args(["compare", "model.toml", SMALL]));
+    assert!(text.starts_with("Residual ") && text.contains("Zero-bias stability"), "{text}");
+    let text = stdout(tempco(folder.path()).args(["export", "model.toml", "-o", "calibration.hex"]));
+    assert!(text.contains("for address 0x080e0000"), "{text}");
+    let text = stdout(tempco(folder.path()).args(["inspect", "calibration.hex"]));
+    assert!(text.contains("A device would take it."), "{text}");
+    let text = stdout(tempco(folder.path()).args(["verify", "model.toml", SMALL]));
+    let (identical, all) = text.split_once(" of ").expect("two counts");
+    assert!(all.starts_with(identical) && all.contains("identical in every bit"), "{text}");
+}
+
+#[test]
+fn other_programs_read_json() {
+    let folder = trained();
+    let text = stdout(tempco(folder.path()).args(["compare", "model.toml", SMALL, "--json"]));
+    let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    for key in ["residual_ug", "noise_floor_ug"] {
+        assert!(value[key].as_f64().is_some_and(|number| number > 0.0), "{key}: {value}");
+    }
+    assert!(value["sensitivity_ppm"]["worst"].is_number() && value["runs"][0]["held_out"].is_boolean(), "{value}");
+}
+
+#[test]
+fn an_exceeded_limit_is_a_no_and_not_an_error() {
+    let folder = trained();
+    tempco(folder.path()).args(["compare", "model.toml", SMALL, "--fail-above", "0.5"]).assert().code(1);
+    tempco(folder.path()).args(["compare", "model.toml", SMALL, "--fail-above", "500"]).assert().code(0);
+}
+
+#[test]
+fn a_damaged_calibration_is_shown_as_what_a_device_would_refuse() {
+    let folder = trained();
+    stdout(tempco(folder.path()).args(["export", "model.toml", "-o", "calibration.bin"]));
+    let path = folder.path().join("calibration.bin");
+    let mut bytes = fs::read(&path).expect("written");
+    bytes[100] ^= 4;
+    fs::write(&path, bytes).expect("a file");
+    let output = tempco(folder.path()).args(["inspect", "calibration.bin"]).assert().code(1).get_output().stdout.clone();
+    assert!(String::from_utf8_lossy(&output).contains("A device would refuse this: corrupted"));
+}
+
+#[test]
+fn every_failure_names_its_place_and_a_way_out() {
+    let folder = TempDir::new().expect("a folder");
+    let bad = folder.path().join("bad.csv");
+    fs::write(&bad, "time_s,temperature_c,reference_g,delta_f_hz\n0,20,0,76\n1,warm,0,76\n").expect("a file");
+    let table = [
+        (vec!["train", "absent.csv"], "absent.csv"),
+        (vec!["train", "bad.csv"], "bad.csv:3, column 2 (temperature_c)"),
+        (vec!["train", SMALL, "--hold-out", "full-9"], "full-9"),
+        (vec!["train", SMALL, "--map", "time_s"], "--map time_s"),
+        (vec!["compare", "absent.toml", SMALL], "absent.toml"),
+        (vec!["simulate", "nowhere"], "nowhere"),
+        (vec!["effects", "thermal-leg"], "thermal-leg"),
+    ];
+    for (arguments, place) in table {
+        let text = stderr_of(tempco(folder.path()).args(&arguments), 2);
+        assert!(text.starts_with("error:") && text.contains(place), "{arguments:?}: {text}");
+    }
+}
+
+#[test]
+fn help_of_every_verb_has_an_example() {
+    let folder = TempDir::new().expect("a folder");
+    for verb in ["demo", "simulate", "train", "compare", "effects", "export", "inspect", "verify"] {
+        let text = stdout(tempco(folder.path()).args([verb, "--help"]));
+        assert!(text.contains(&format!("Example:  tempco {verb}")), "{verb}: {text}");
+    }
+}

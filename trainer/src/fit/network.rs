@@ -1,0 +1,255 @@
+//! The 2-10-1 network as a separable least-squares problem.
+//!
+//! Ten of its 41 weights and the first-order instrument beside it enter linearly. For given hidden
+//! weights they follow from one small linear solve, so only the 30 hidden weights are searched
+//! (variable projection, Golub & Pereyra 1973, in Kaufman's form). One pass over the rows fills one
+//! Gram matrix from which cost, gradient and Gauss–Newton matrix all follow:
+//!
+//! ```text
+//!   columns   A = [1 x t xt σ₁…σ₁₀]   y   D = [σ'ₖx σ'ₖt σ'ₖ]
+//!   c  = (AᵀA)⁻¹Aᵀy                     the linear weights
+//!   g  = −V(Dᵀy − DᵀAc)                V = diag of the output weights
+//!   H  = V(DᵀD − DᵀA(AᵀA)⁻¹AᵀD)V
+//! ```
+//!
+//! The rows of one run share an offset that no model can know (turn-on, mounting). It is treated as
+//! what it is, a random effect: subtracting one rank-one term a run from the Gram matrix makes the
+//! fit a generalised least-squares fit at no cost.
+//!
+//! Rows of a second kind ask for the slope ∂y/∂x instead of the value; they keep an accelerometer
+//! from becoming a classifier of the levels that it was trained on.
+
+use super::levenberg_marquardt::{Problem, Quadratic};
+use firmware_core::activation::{curvature, sigmoid, slope};
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
+use protocol::limits::HIDDEN;
+
+/// Hidden weights: input x, input t, threshold of each unit in turn.
+pub const NONLINEAR: usize = 3 * HIDDEN;
+/// Constant, x, t, x·t of the first-order instrument, then the output weights.
+pub const LINEAR: usize = LINE + HIDDEN;
+const LINE: usize = 4;
+const TARGET: usize = LINEAR;
+/// Columns that the cost alone needs.
+const COST_COLUMNS: usize = LINEAR + 1;
+const DERIVATIVES: usize = COST_COLUMNS;
+const COLUMNS: usize = DERIVATIVES + NONLINEAR;
+
+/// Asks for a value of the output.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValueRow {
+    /// Scaled frequency difference.
+    pub x: f64,
+    /// Scaled temperature.
+    pub t: f64,
+    /// The wanted output.
+    pub y: f64,
+    /// Weight of its squared residual.
+    pub weight: f64,
+}
+
+/// The rows of one run, whose residuals share an offset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// The rows.
+    pub rows: Vec<ValueRow>,
+    /// Variance of the shared offset in units of the variance of a row of weight one.
+    pub offset_variance: f64,
+}
+
+/// Asks for a slope of the output.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlopeRow {
+    /// Scaled frequency difference.
+    pub x: f64,
+    /// Scaled temperature.
+    pub t: f64,
+    /// The wanted ∂output/∂x.
+    pub slope: f64,
+    /// Weight of its squared residual.
+    pub weight: f64,
+}
+
+/// Gaussian priors of the weights: precision in units of a value row of weight one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prior {
+    /// Of each output weight.
+    pub output: f64,
+    /// Of each hidden weight.
+    pub hidden: f64,
+}
+
+/// The network's share of one fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Hidden weights, [x, t, threshold] of each unit.
+    pub hidden: Vec<f64>,
+    /// Constant, x, t, x·t.
+    pub line: [f64; LINE],
+    /// Output weights.
+    pub output: [f64; HIDDEN],
+}
+
+impl Fit {
+    /// The output at (x, t).
+    #[must_use]
+    pub fn evaluate(&self, x: f64, t: f64) -> f64 {
+        let [constant, by_x, by_t, by_xt] = self.line;
+        let units = self.hidden.as_chunks::<3>().0.iter().zip(&self.output);
+        constant
+            + by_x * x
+            + by_t * t
+            + by_xt * x * t
+            + units.map(|([wx, wt, b], v)| v * sigmoid(b + wx * x + wt * t)).sum::<f64>()
+    }
+}
+
+/// The separable problem: rows, slopes and priors.
+pub struct NetworkProblem<'a> {
+    groups: &'a [Group],
+    slopes: &'a [SlopeRow],
+    prior: Prior,
+    gram: Box<Gram>,
+}
+
+type Gram = [[f64; COLUMNS]; COLUMNS];
+type LinearMatrix = SMatrix<f64, LINEAR, LINEAR>;
+type LinearVector = SVector<f64, LINEAR>;
+
+/// Relative ridge that keeps the linear solve positive definite when units coincide.
+const JITTER: f64 = 1e-13;
+
+impl<'a> NetworkProblem<'a> {
+    /// The problem of these rows.
+    #[must_use]
+    pub fn new(groups: &'a [Group], slopes: &'a [SlopeRow], prior: Prior) -> Self {
+        Self { groups, slopes, prior, gram: Box::new([[0.0; COLUMNS]; COLUMNS]) }
+    }
+
+    /// The whole network at these hidden weights.
+    pub fn fit(&mut self, hidden: &[f64]) -> Option<Fit> {
+        self.fill(hidden, COST_COLUMNS);
+        let (_, linear, _) = self.solve_linear()?;
+        let mut fit = Fit { hidden: hidden.to_vec(), line: [0.0; LINE], output: [0.0; HIDDEN] };
+        let (line, output) = linear.as_slice().split_at(LINE);
+        fit.line.copy_from_slice(line);
+        fit.output.copy_from_slice(output);
+        Some(fit)
+    }
+
+    /// Fills the first `used` columns of the Gram matrix.
+    fn fill(&mut self, hidden: &[f64], used: usize) {
+        for row in self.gram.iter_mut() {
+            row.fill(0.0);
+        }
+        let mut columns = [0.0; COLUMNS];
+        for group in self.groups {
+            let (mut sum, mut weight) = ([0.0; COLUMNS], 0.0);
+            for row in &group.rows {
+                value_columns(row, hidden, &mut columns);
+                accumulate(&mut self.gram, &columns[..used], row.weight);
+                weight += row.weight;
+                sum.iter_mut().zip(&columns).for_each(|(sum, column)| *sum += row.weight * column);
+            }
+            // (W⁻¹ + v·11ᵀ)⁻¹ = W − v/(1 + v·ΣW)·W11ᵀW
+            accumulate(&mut self.gram, &sum[..used], -group.offset_variance / (1.0 + group.offset_variance * weight));
+        }
+        for row in self.slopes {
+            slope_columns(row, hidden, &mut columns);
+            accumulate(&mut self.gram, &columns[..used], row.weight);
+        }
+        for unit in LINE..LINEAR {
+            self.gram[unit][unit] += self.prior.output;
+        }
+    }
+
+    /// Factor of AᵀA, the linear weights, and twice the cost without the hidden prior.
+    fn solve_linear(&self) -> Option<(Cholesky<f64, Const<LINEAR>>, LinearVector, f64)> {
+        let mut normal = LinearMatrix::zeros();
+        let mut right = LinearVector::zeros();
+        for i in 0..LINEAR {
+            for j in i..LINEAR {
+                normal[(i, j)] = self.gram[i][j];
+                normal[(j, i)] = self.gram[i][j];
+            }
+            normal[(i, i)] *= 1.0 + JITTER;
+            right[i] = self.gram[i][TARGET];
+        }
+        let factor = Cholesky::new(normal)?;
+        let linear = factor.solve(&right);
+        let squares = self.gram[TARGET][TARGET] - linear.dot(&right);
+        (squares.is_finite() && linear.iter().all(|v| v.is_finite())).then_some((factor, linear, squares.max(0.0)))
+    }
+
+    fn hidden_cost(&self, hidden: &[f64]) -> f64 {
+        0.5 * self.prior.hidden * hidden.iter().map(|w| w * w).sum::<f64>()
+    }
+}
+
+impl Problem for NetworkProblem<'_> {
+    fn parameters(&self) -> usize {
+        NONLINEAR
+    }
+
+    fn cost(&mut self, hidden: &[f64]) -> f64 {
+        self.fill(hidden, COST_COLUMNS);
+        self.solve_linear().map_or(f64::INFINITY, |(_, _, squares)| 0.5 * squares + self.hidden_cost(hidden))
+    }
+
+    fn linearise(&mut self, hidden: &[f64], quadratic: &mut Quadratic) {
+        self.fill(hidden, COLUMNS);
+        let Some((factor, linear, squares)) = self.solve_linear() else {
+            quadratic.cost = f64::INFINITY;
+            return;
+        };
+        quadratic.cost = 0.5 * squares + self.hidden_cost(hidden);
+        let cross = SMatrix::<f64, LINEAR, NONLINEAR>::from_fn(|i, j| self.gram[i][DERIVATIVES + j]);
+        let absorbed = cross.transpose() * factor.solve(&cross);
+        let output = |j: usize| linear[LINE + j / 3];
+        for i in 0..NONLINEAR {
+            let (row, vi) = (DERIVATIVES + i, output(i));
+            let fitted: f64 = cross.column(i).dot(&linear);
+            quadratic.gradient[i] = -vi * (self.gram[TARGET][row] - fitted) + self.prior.hidden * hidden[i];
+            for j in i..NONLINEAR {
+                let value = vi * output(j) * (self.gram[row][DERIVATIVES + j] - absorbed[(i, j)]);
+                quadratic.hessian[(i, j)] = value;
+                quadratic.hessian[(j, i)] = value;
+            }
+            quadratic.hessian[(i, i)] += self.prior.hidden;
+        }
+    }
+}
+
+fn value_columns(row: &ValueRow, hidden: &[f64], columns: &mut [f64; COLUMNS]) {
+    let &ValueRow { x, t, y, .. } = row;
+    columns[..LINE].copy_from_slice(&[1.0, x, t, x * t]);
+    for (unit, [wx, wt, b]) in hidden.as_chunks::<3>().0.iter().enumerate() {
+        let u = b + wx * x + wt * t;
+        let rise = slope(u);
+        columns[LINE + unit] = sigmoid(u);
+        columns[DERIVATIVES + 3 * unit..][..3].copy_from_slice(&[rise * x, rise * t, rise]);
+    }
+    columns[TARGET] = y;
+}
+
+fn slope_columns(row: &SlopeRow, hidden: &[f64], columns: &mut [f64; COLUMNS]) {
+    let &SlopeRow { x, t, .. } = row;
+    columns[..LINE].copy_from_slice(&[0.0, 1.0, 0.0, t]);
+    for (unit, [wx, wt, b]) in hidden.as_chunks::<3>().0.iter().enumerate() {
+        let u = b + wx * x + wt * t;
+        let (rise, bend) = (slope(u), wx * curvature(u));
+        columns[LINE + unit] = wx * rise;
+        columns[DERIVATIVES + 3 * unit..][..3].copy_from_slice(&[rise + bend * x, bend * t, bend]);
+    }
+    columns[TARGET] = row.slope;
+}
+
+/// Adds weight · columnsᵀcolumns to the upper triangle.
+fn accumulate(gram: &mut Gram, columns: &[f64], weight: f64) {
+    for (i, (row, column)) in gram.iter_mut().zip(columns).enumerate() {
+        let factor = weight * column;
+        for (slot, value) in row[i..].iter_mut().zip(&columns[i..]) {
+            *slot += factor * value;
+        }
+    }
+}

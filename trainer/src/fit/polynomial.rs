@@ -1,0 +1,147 @@
+//! The calibration that everybody makes first: a polynomial in frequency difference and temperature.
+//!
+//! It is the baseline that a network must beat, and the campaign's own measurement of the scale
+//! factor: its slope ∂a/∂Δf is what the network's slope is held to.
+
+use super::dataset::Datum;
+use nalgebra::{DMatrix, DVector};
+
+/// a = Σᵢⱼ cᵢⱼ xⁱ tʲ with its covariance.
+#[derive(Clone, Debug)]
+pub struct Polynomial {
+    degree_x: usize,
+    degree_t: usize,
+    coefficients: DVector<f64>,
+    /// Inverse normal matrix; times the residual variance it is the covariance.
+    inverse: DMatrix<f64>,
+}
+
+/// Inputs closer than this in scaled units count as one level.
+const SAME_LEVEL: f64 = 0.05;
+/// Highest powers: the baseline of the field is Δf² · T³.
+const MOST_X: usize = 2;
+const MOST_T: usize = 3;
+/// Directions whose information is below this fraction of the best one are not determined by the data.
+const LEAST_INFORMATION: f64 = 1e-12;
+
+impl Polynomial {
+    /// Weighted least squares, with no higher powers than the data's distinct levels and temperatures carry.
+    #[must_use]
+    pub fn fit(data: &[Datum]) -> Self {
+        let degree_x = MOST_X.min(distinct(data.iter().map(|datum| datum.x)).saturating_sub(1));
+        let degree_t = MOST_T.min(distinct(data.iter().map(|datum| datum.t)).saturating_sub(1));
+        Self::fit_degrees(data, degree_x, degree_t)
+    }
+
+    /// Weighted least squares with these highest powers.
+    #[must_use]
+    pub fn fit_degrees(data: &[Datum], degree_x: usize, degree_t: usize) -> Self {
+        let terms = (degree_x + 1) * (degree_t + 1);
+        let mut normal = DMatrix::zeros(terms, terms);
+        let mut right = DVector::zeros(terms);
+        for row in data {
+            let basis = basis(degree_x, degree_t, row.x, row.t);
+            normal.ger(row.weight, &basis, &basis, 1.0);
+            right.axpy(row.weight * row.reference_g, &basis, 1.0);
+        }
+        let inverse = pseudo_inverse(normal);
+        Self { degree_x, degree_t, coefficients: &inverse * right, inverse }
+    }
+
+    /// The value at (x, t), g.
+    #[must_use]
+    pub fn evaluate(&self, x: f64, t: f64) -> f64 {
+        basis(self.degree_x, self.degree_t, x, t).dot(&self.coefficients)
+    }
+
+    /// ∂a/∂x at (x, t), g.
+    #[must_use]
+    pub fn slope(&self, x: f64, t: f64) -> f64 {
+        slope_basis(self.degree_x, self.degree_t, x, t).dot(&self.coefficients)
+    }
+
+    /// Standard deviation of [`Polynomial::slope`] for a residual of `sigma_g` per row of weight one, g.
+    #[must_use]
+    pub fn slope_sigma(&self, x: f64, t: f64, sigma_g: f64) -> f64 {
+        let basis = slope_basis(self.degree_x, self.degree_t, x, t);
+        sigma_g * (&self.inverse * &basis).dot(&basis).max(0.0).sqrt()
+    }
+
+    /// Coefficients of 1, x, t and x·t, g; higher powers are left out.
+    #[must_use]
+    pub fn bilinear(&self) -> [f64; 4] {
+        let of = |i: usize, j: usize| {
+            let within = i <= self.degree_x && j <= self.degree_t;
+            if within { self.coefficients[i * (self.degree_t + 1) + j] } else { 0.0 }
+        };
+        [of(0, 0), of(1, 0), of(0, 1), of(1, 1)]
+    }
+
+    /// Highest powers of frequency difference and temperature.
+    #[must_use]
+    pub const fn degrees(&self) -> (usize, usize) {
+        (self.degree_x, self.degree_t)
+    }
+}
+
+fn basis(degree_x: usize, degree_t: usize, x: f64, t: f64) -> DVector<f64> {
+    products(degree_x, degree_t, |i| x.powi(i), t)
+}
+
+fn slope_basis(degree_x: usize, degree_t: usize, x: f64, t: f64) -> DVector<f64> {
+    products(degree_x, degree_t, |i| if i == 0 { 0.0 } else { f64::from(i) * x.powi(i - 1) }, t)
+}
+
+fn products(degree_x: usize, degree_t: usize, power_of_x: impl Fn(i32) -> f64, t: f64) -> DVector<f64> {
+    let powers = degree_t + 1;
+    let term = |k: usize, _| power_of_x((k / powers) as i32) * t.powi((k % powers) as i32);
+    DVector::from_fn((degree_x + 1) * powers, term)
+}
+
+/// Leaves out directions that the data do not determine, instead of inventing a value for them.
+fn pseudo_inverse(normal: DMatrix<f64>) -> DMatrix<f64> {
+    let eigen = normal.symmetric_eigen();
+    let least = eigen.eigenvalues.max() * LEAST_INFORMATION;
+    let inverted = eigen.eigenvalues.map(|value| if value > least { value.recip() } else { 0.0 });
+    &eigen.eigenvectors * DMatrix::from_diagonal(&inverted) * eigen.eigenvectors.transpose()
+}
+
+/// How many values are further apart than [`SAME_LEVEL`].
+fn distinct(values: impl Iterator<Item = f64>) -> usize {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    let mut count = 0;
+    let mut last = f64::NEG_INFINITY;
+    for value in sorted {
+        if value - last > SAME_LEVEL {
+            count += 1;
+            last = value;
+        }
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(x: f64, t: f64) -> Datum {
+        Datum { x, t, reference_g: 1.5 * x - 0.3 + 0.2 * t + 0.01 * x * t * t - 0.02 * x * x, weight: 1.0, run: 0 }
+    }
+
+    #[test]
+    fn it_recovers_a_polynomial_and_its_slope() {
+        let rows: Vec<Datum> =
+            (0..63).map(|k| row(f64::from(k % 7) / 3.0 - 1.0, f64::from(k / 7) / 4.0 - 1.0)).collect();
+        let fit = Polynomial::fit(&rows);
+        assert_eq!(fit.degrees(), (2, 3));
+        assert!((fit.evaluate(0.37, -0.2) - row(0.37, -0.2).reference_g).abs() < 1e-12);
+        assert!((fit.slope(0.5, 0.5) - (1.5 + 0.01 * 0.25 - 0.02)).abs() < 1e-11);
+    }
+
+    #[test]
+    fn levels_that_are_not_there_carry_no_power() {
+        let rows: Vec<Datum> = (0..20).map(|k| row(f64::from(k % 2), f64::from(k) / 10.0 - 1.0)).collect();
+        assert_eq!(Polynomial::fit(&rows).degrees(), (1, 3));
+    }
+}

@@ -1,0 +1,34 @@
+//! Figures of merit, each with its definition.
+
+pub mod allan;
+pub mod full_temperature;
+pub mod states;
+pub mod zero_bias;
+
+/// Mean of the values; zero of none.
+#[must_use]
+pub fn mean(values: &[f64]) -> f64 {
+    if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 }
+}
+
+/// Sample standard deviation (divisor n − 1); zero of fewer than two values.
+#[must_use]
+pub fn standard_deviation(values: &[f64]) -> f64 {
+    if values.len() < 2 {
+        return 0.0;
+    }
+    let mean = mean(values);
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (squares / (values.len() - 1) as f64).sqrt()
+}
+
+/// Slope of the least-squares line through (x, y); zero where x does not vary.
+#[must_use]
+pub fn line_slope(points: &[(f64, f64)]) -> f64 {
+    let xs: Vec<f64> = points.iter().map(|point| point.0).collect();
+    let ys: Vec<f64> = points.iter().map(|point| point.1).collect();
+    let (x_mean, y_mean) = (mean(&xs), mean(&ys));
+    let spread: f64 = xs.iter().map(|x| (x - x_mean).powi(2)).sum();
+    let product: f64 = points.iter().map(|(x, y)| (x - x_mean) * (y - y_mean)).sum();
+    if spread > 0.0 { product / spread } else { 0.0 }
+}

@@ -1,0 +1,31 @@
+//! What long work tells while it runs. The library prints nothing and reads no clock.
+
+/// Watches a training and may end it.
+pub trait Progress: Sync {
+    /// Called as restarts advance, from several threads.
+    fn restart(&self, _news: RestartNews) {}
+
+    /// Whether the user wants to stop. What was found until then is kept.
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// How one restart is doing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RestartNews {
+    /// Which of the restarts.
+    pub index: usize,
+    /// Iterations so far.
+    pub iteration: usize,
+    /// RMS residual on the training runs so far, g.
+    pub residual_g: f64,
+    /// Whether this restart has ended.
+    pub done: bool,
+}
+
+/// Watches nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Quiet;
+
+impl Progress for Quiet {}

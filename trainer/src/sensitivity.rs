@@ -1,0 +1,91 @@
+//! Is it still an accelerometer? The model's local slope against the measured scale factor.
+//!
+//! A network can fit −1, 0 and +1 g to a few µg and be wrong by a tenth of a g in between. What gives
+//! it away is its slope ∂a/∂Δf, which for a working sensor is 1/K1(T) everywhere.
+
+use crate::campaign::{Campaign, Run};
+use crate::fit::dataset::{InputScale, merged};
+use crate::fit::polynomial::Polynomial;
+use crate::model::Model;
+use firmware_core::Network;
+use serde::Serialize;
+
+/// What the figures mean.
+pub const DEFINITION: &str = "deviation of the local slope ∂a/∂Δf of the model from 1/K1(T, Δf) as a polynomial fit \
+    (Δf² · T³) measures it on all runs of the campaign, over a grid on the calibrated domain, in ppm of 1/K1.";
+
+/// How faithful the local sensitivity is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Sensitivity {
+    /// Root mean square over the grid, ppm.
+    pub rms: f64,
+    /// Largest over the grid, ppm.
+    pub worst: f64,
+}
+
+/// Points of the grid along each input.
+const GRID: i32 = 41;
+
+/// The model's slope over the calibrated domain against the campaign's own scale factor; `None` where
+/// the campaign can't measure one because its reference never varies.
+#[must_use]
+pub fn sensitivity(model: &Model, campaign: &Campaign) -> Option<Sensitivity> {
+    if campaign.levels(LEVEL_TOLERANCE_G).len() < 2 {
+        return None;
+    }
+    let scale = InputScale::of(&campaign.runs)?;
+    let data: Vec<_> = campaign.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| merged(run, i, &scale)).collect();
+    let measured = Polynomial::fit(&data);
+    let slope = |x: f64, t: f64| measured.slope(x, t) / scale.delta_f_half_span_hz;
+    Some(over_domain(model, |delta_f_uhz, temperature_uc| {
+        let x = (delta_f_uhz - scale.delta_f_zero_uhz as f64) * 1e-6 / scale.delta_f_half_span_hz;
+        let t = (temperature_uc - f64::from(scale.temperature_zero_uc)) * 1e-6 / scale.temperature_half_span_c;
+        slope(x, t)
+    }))
+}
+
+/// References closer than this are one level, g.
+const LEVEL_TOLERANCE_G: f64 = 0.01;
+
+/// The model's slope over its domain against `truth_g_per_hz(delta_f_uhz, temperature_uc)`.
+pub fn over_domain(model: &Model, truth_g_per_hz: impl Fn(f64, f64) -> f64) -> Sensitivity {
+    let [f_low, f_high] = model.domain.delta_f_uhz.map(|uhz| uhz as f64);
+    let [t_low, t_high] = model.domain.temperature_uc.map(f64::from);
+    let slope = SlopeOf::new(model);
+    let (mut squares, mut worst) = (0.0, 0.0_f64);
+    for (i, j) in (0..GRID).flat_map(|i| (0..GRID).map(move |j| (i, j))) {
+        let part = |k: i32| f64::from(k) / f64::from(GRID - 1);
+        let (f, t) = (f_low + (f_high - f_low) * part(i), t_low + (t_high - t_low) * part(j));
+        let ppm = (slope.at(f, t) / truth_g_per_hz(f, t) - 1.0) * 1e6;
+        squares += ppm * ppm;
+        worst = worst.max(ppm.abs());
+    }
+    Sensitivity { rms: (squares / f64::from(GRID * GRID)).sqrt(), worst }
+}
+
+/// The slope of a model's static part.
+pub struct SlopeOf<'a> {
+    model: &'a Model,
+    network: Network<f64>,
+}
+
+impl<'a> SlopeOf<'a> {
+    /// Of this model.
+    #[must_use]
+    pub fn new(model: &'a Model) -> Self {
+        Self { model, network: Network::new(&model.weights()) }
+    }
+
+    /// ∂a/∂Δf, g/Hz, at a frequency difference in µHz and a temperature in µ°C.
+    #[must_use]
+    pub fn at(&self, delta_f_uhz: f64, temperature_uc: f64) -> f64 {
+        let scaling = &self.model.scaling;
+        let x_per_hz = f64::from(scaling.delta_f_gain_per_hz);
+        let x = (delta_f_uhz - scaling.delta_f_zero_uhz as f64) * 1e-6 * x_per_hz;
+        let t = (temperature_uc - f64::from(scaling.temperature_zero_uc))
+            * 1e-6
+            * f64::from(scaling.temperature_gain_per_c);
+        let [_, by_x, _, by_xt] = scaling.line_g.map(f64::from);
+        (by_x + by_xt * t + f64::from(scaling.output_g) * self.network.gradient(x, t)[0]) * x_per_hz
+    }
+}
