@@ -133,7 +133,8 @@ fn solve(certified: &Certified, start: &[f64]) -> Minimum {
 
 #[test]
 fn every_certified_minimum_is_found_from_both_starts() {
-    let mut table = format!("{:10} {:>8} {:>8} {:>11} {:>11}\n", "problem", "digits 1", "digits 2", "iterations 1", "2");
+    let mut table =
+        format!("{:10} {:>8} {:>8} {:>11} {:>11}\n", "problem", "digits 1", "digits 2", "iterations 1", "2");
     let mut least = f64::INFINITY;
     for certified in problems() {
         let minima = [0, 1].map(|k| solve(&certified, &certified.starts[k]));

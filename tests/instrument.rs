@@ -9,9 +9,7 @@ use firmware_sim::virtual_instrument::VirtualInstrument;
 use firmware_sim::virtual_line::VirtualLine;
 use firmware_sim::virtual_thermometer::VirtualThermometer;
 use proptest::prelude::*;
-use protocol::{
-    Decoder, Envelope, Reading, Refusal, Request, Response, Sample, Status, encode_frame, encode_request,
-};
+use protocol::{Decoder, Envelope, Reading, Refusal, Request, Response, Sample, Status, encode_frame, encode_request};
 use tests::{example, golden};
 
 const F1_HZ: f64 = 41_238.0;

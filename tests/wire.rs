@@ -101,9 +101,8 @@ fn any_response() -> impl Strategy<Value = Response> {
         let serial = serial.as_str().try_into().expect("at most 24 bytes");
         Response::Identity(Identity { serial, blob_layout, effects })
     });
-    let state = (any::<(Option<[u8; 8]>, u32)>(), any_status()).prop_map(|((provenance, readings), raised)| {
-        Response::State(InstrumentState { provenance, readings, raised })
-    });
+    let state = (any::<(Option<[u8; 8]>, u32)>(), any_status())
+        .prop_map(|((provenance, readings), raised)| Response::State(InstrumentState { provenance, readings, raised }));
     prop_oneof![
         identity,
         state,

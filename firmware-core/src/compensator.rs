@@ -1,13 +1,11 @@
 //! From a checked calibration and samples to readings.
 
-use crate::effect::{self, Coefficients, Disturbance, Effect, Moment, Signal};
-use crate::memory::{Memory, State};
+use crate::effect::Disturbance;
 use crate::network::Network;
-use crate::observe::{Clock, Observation, Scale, Step};
+use crate::observe::{Observation, Scale};
 use crate::real::Real;
+use crate::terms::Terms;
 use core::fmt;
-use heapless::Vec;
-use protocol::limits::{MAX_CHANNELS, MAX_PARAMETERS, MAX_TERMS};
 use protocol::{Blob, Domain, Reading, Sample, Scaling, Status, Term};
 
 /// Why a calibration can't be run, although its bytes are sound.
@@ -30,6 +28,8 @@ pub enum LoadError {
         /// The effect's number.
         effect: u16,
     },
+    /// More effects than the instrument has room for.
+    TooManyEffects,
     /// A weight, coefficient or scale is infinite or not a number, or an input gain is not positive.
     Number,
     /// The calibrated domain is empty.
@@ -51,6 +51,7 @@ impl fmt::Display for LoadError {
                 write!(f, "effect number {effect} takes {expected} coefficients, the blob has {found}")
             }
             Self::Channel { effect } => write!(f, "effect number {effect} uses a channel that the blob doesn't name"),
+            Self::TooManyEffects => write!(f, "more effects than the instrument has room for"),
             Self::Number => write!(f, "a weight, coefficient or scale is not a usable number"),
             Self::Domain => write!(f, "the calibrated domain is empty"),
             Self::Proof { computed, stored } => write!(
@@ -73,17 +74,7 @@ pub struct Compensator<R: Real = f32> {
     scale: Scale<R>,
     network: Network<R>,
     domain: Domain,
-    clock: Clock,
-    terms: Vec<ActiveTerm<R>, MAX_TERMS>,
-}
-
-#[derive(Clone)]
-struct ActiveTerm<R: Real> {
-    effect: &'static dyn Effect<R>,
-    coefficients: Coefficients<R>,
-    channel: usize,
-    memory: Memory<R>,
-    state: State<R>,
+    terms: Terms<R>,
 }
 
 /// What the compensator made of one sample, before it is rounded into a [`Reading`].
@@ -140,53 +131,36 @@ impl<R: Real> Compensator<R> {
         if domain.delta_f_uhz.0 >= domain.delta_f_uhz.1 || domain.temperature_uc.0 >= domain.temperature_uc.1 {
             return Err(LoadError::Domain);
         }
-        let mut terms = Vec::new();
-        for term in &blob.terms {
-            // The blob holds at most MAX_TERMS, so there is room.
-            let _ = terms.push(ActiveTerm::new(term, blob.channels.len())?);
+        let mut terms = Terms::new(blob.timing.max_gap_us);
+        for Term { effect, channel, parameters } in &blob.terms {
+            let parameters = parameters.iter().copied().map(R::from_f32);
+            terms.push(*effect, usize::from(*channel), blob.channels.len(), parameters)?;
         }
         Ok(Self {
             scaling: blob.scaling,
             scale: Scale::new(&blob.scaling),
             network: Network::new(&blob.weights),
             domain,
-            clock: Clock::new(blob.timing.max_gap_us),
             terms,
         })
     }
 
     /// Forgets the past, as at power-on after a long soak.
     pub fn restart(&mut self) {
-        self.clock.restart();
-        for term in &mut self.terms {
-            term.state = State::REST;
-        }
+        self.terms.restart();
     }
 
     /// Observes the sample, advances the memories, evaluates network and effects.
     pub fn evaluate(&mut self, sample: &Sample) -> Output<R> {
         let now = Observation::new(sample, &self.scaling);
-        let (step, last, mut status) = self.clock.step(sample);
-        status |= sample.faults | self.outside(sample);
+        let status = sample.faults | self.outside(sample) | self.terms.advance(sample);
         if self.terms.is_empty() {
             let (inputs, level_g) = self.level(&now, &Disturbance::NONE);
             return Output { inputs, level_g, bias_g: R::ZERO, status };
         }
         let (_, apparent_g) = self.level(&now, &Disturbance::NONE);
-        for term in &mut self.terms {
-            term.remember(step, sample, last.as_ref());
-            status |= term.flags(sample);
-        }
-        let mut disturbance = Disturbance::NONE;
-        for term in &self.terms {
-            disturbance += term.effect.disturb(&term.moment(&now, apparent_g), &term.coefficients);
-        }
-        let (inputs, level_g) = self.level(&now, &disturbance);
-        let mut bias_g = R::ZERO;
-        for term in &self.terms {
-            bias_g += term.effect.bias_g(&term.moment(&now, level_g), &term.coefficients);
-        }
-        Output { inputs, level_g, bias_g, status }
+        let (inputs, level_g) = self.level(&now, &self.terms.disturbance(&now, apparent_g));
+        Output { inputs, level_g, bias_g: self.terms.bias_g(&now, level_g), status }
     }
 
     /// Network inputs and static reading once the disturbance of the resonators is taken out.
@@ -211,67 +185,6 @@ impl<R: Real> Compensator<R> {
     }
 }
 
-impl<R: Real> ActiveTerm<R> {
-    fn new(term: &Term, channels: usize) -> Result<Self, LoadError> {
-        let effect = effect::find::<R>(term.effect).ok_or(LoadError::UnknownEffect(term.effect))?;
-        let (found, expected) = (term.parameters.len(), effect.coefficients());
-        if found != expected {
-            return Err(LoadError::Coefficients { effect: term.effect, found, expected });
-        }
-        let channel = usize::from(term.channel);
-        if effect.signal() == Signal::Channel && channel >= channels {
-            return Err(LoadError::Channel { effect: term.effect });
-        }
-        let mut coefficients = [R::ZERO; MAX_PARAMETERS];
-        for (slot, value) in coefficients.iter_mut().zip(&term.parameters) {
-            *slot = R::from_f32(*value);
-        }
-        let memory = effect.memory(&coefficients);
-        Ok(Self { effect, coefficients, channel, memory, state: State::REST })
-    }
-
-    fn remember(&mut self, step: Step, sample: &Sample, last: Option<&Sample>) {
-        match (step, last) {
-            (Step::Anew, _) => self.state = State::REST,
-            (Step::Forward(gap_us), Some(last)) => {
-                let dt_s = R::from_micro(i64::try_from(gap_us).unwrap_or(i64::MAX));
-                let increment = self.increment(sample, last);
-                self.state.advance(&self.memory, increment, dt_s);
-            }
-            _ => {}
-        }
-    }
-
-    /// By how much the signal that this effect follows changed, differenced as integers.
-    fn increment(&self, sample: &Sample, last: &Sample) -> R {
-        match self.effect.signal() {
-            Signal::Temperature => {
-                R::from_micro(i64::from(sample.temperature_uc) - i64::from(last.temperature_uc))
-            }
-            Signal::Channel => {
-                let of = |sample: &Sample| sample.channels.get(self.channel).copied().unwrap_or(0);
-                R::from_micro(of(sample).saturating_sub(of(last)))
-            }
-        }
-    }
-
-    fn moment<'a>(&self, now: &'a Observation<R>, level_g: R) -> Moment<'a, R> {
-        Moment {
-            now,
-            departure: self.state.departure(),
-            channel: now.channels.get(self.channel).copied().unwrap_or(R::ZERO),
-            level_g,
-        }
-    }
-
-    fn flags(&self, sample: &Sample) -> Status {
-        let mut status = Status::empty();
-        status.set(Status::SETTLING, self.memory != Memory::None && !self.state.is_settled());
-        status.set(Status::CHANNEL_MISSING, self.effect.needs_age() && sample.age_s.is_none());
-        status
-    }
-}
-
 fn check_numbers(blob: &Blob) -> Result<(), LoadError> {
     let scaling = &blob.scaling;
     let gains = [scaling.delta_f_gain_per_hz, scaling.temperature_gain_per_c];
@@ -283,12 +196,5 @@ fn check_numbers(blob: &Blob) -> Result<(), LoadError> {
         .chain(scaling.line_g)
         .chain([scaling.output_g])
         .chain(blob.terms.iter().flat_map(|term| term.parameters.iter().copied()));
-    if numbers.all(f32::is_finite) && gains.iter().all(|gain| *gain > 0.0) {
-        Ok(())
-    } else {
-        Err(LoadError::Number)
-    }
+    if numbers.all(f32::is_finite) && gains.iter().all(|gain| *gain > 0.0) { Ok(()) } else { Err(LoadError::Number) }
 }
-
-// The host's channel count and the wire's must agree for the indices above.
-const _: () = assert!(MAX_CHANNELS <= u8::MAX as usize);

@@ -7,7 +7,7 @@
 //!                         │ observe.rs         integer differences, time, then f32
 //!                    Observation
 //!          memory.rs ─┐   │
-//!   effect/*.rs ──────┤   │                    what disturbs the resonators, what disturbs the output
+//!   effect/*.rs ─────→ terms.rs                what disturbs the resonators, what disturbs the output
 //!   network.rs ───────┴───┤ compensator.rs
 //!                      Reading                 acceleration and its status
 //!                         │ instrument.rs      the conversation: requests in, responses out
@@ -28,6 +28,7 @@ mod memory;
 mod network;
 mod observe;
 mod real;
+mod terms;
 mod thermometer;
 
 pub use compensator::{Compensator, LoadError, Output};
@@ -38,4 +39,5 @@ pub use memory::{Memory, State};
 pub use network::Network;
 pub use observe::{Clock, Observation, Scale};
 pub use real::Real;
+pub use terms::Terms;
 pub use thermometer::{Thermometer, ThermometerError};

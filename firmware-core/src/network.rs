@@ -29,12 +29,8 @@ impl<R: Real> Network<R> {
         let mut units = [Unit { x: R::ZERO, t: R::ZERO, bias: R::ZERO, output: R::ZERO }; HIDDEN];
         let rows = weights.input.iter().zip(&weights.bias).zip(&weights.output);
         for (unit, (([x, t], bias), output)) in units.iter_mut().zip(rows) {
-            *unit = Unit {
-                x: R::from_f32(*x),
-                t: R::from_f32(*t),
-                bias: R::from_f32(*bias),
-                output: R::from_f32(*output),
-            };
+            *unit =
+                Unit { x: R::from_f32(*x), t: R::from_f32(*t), bias: R::from_f32(*bias), output: R::from_f32(*output) };
         }
         Self { units, bias: R::from_f32(weights.output_bias) }
     }

@@ -198,7 +198,12 @@ impl Board {
         // SAFETY: masking interrupts touches no memory.
         unsafe { asm!("cpsid i", options(nomem, nostack, preserves_flags)) };
         NVIC_ISER1.write(USART1_INTERRUPT);
-        Self { counter: spi::Device::start(), thermometer: i2c::Bus::start(), clock: Clock::start(), line: SerialLine::start() }
+        Self {
+            counter: spi::Device::start(),
+            thermometer: i2c::Bus::start(),
+            clock: Clock::start(),
+            line: SerialLine::start(),
+        }
     }
 }
 

@@ -36,7 +36,8 @@ fn headline(comparison: &Comparison) -> String {
 }
 
 fn runs(comparison: &Comparison) -> Table {
-    let mut table = Table::new(["run", "kind", "seen", "samples", "residual µg", "mean µg", "about mean µg", "flagged"]);
+    let mut table =
+        Table::new(["run", "kind", "seen", "samples", "residual µg", "mean µg", "about mean µg", "flagged"]);
     for run in &comparison.runs {
         table.row([
             run.run.clone(),
@@ -69,10 +70,7 @@ fn section(text: &mut String, title: &str, definition: &str, table: Option<Table
     }
 }
 
-fn pairs<'a, T>(
-    figures: &'a [RunFigures],
-    get: impl Fn(&'a Figures) -> Option<T>,
-) -> Vec<(&'a RunFigures, T, T)> {
+fn pairs<'a, T>(figures: &'a [RunFigures], get: impl Fn(&'a Figures) -> Option<T>) -> Vec<(&'a RunFigures, T, T)> {
     figures.iter().filter_map(|run| Some((run, get(&run.raw)?, get(&run.compensated)?))).collect()
 }
 
@@ -96,8 +94,7 @@ fn zero_bias_table(figures: &[RunFigures]) -> Option<Table> {
 
 fn temperature_table(figures: &[RunFigures]) -> Option<Table> {
     let rows = pairs(figures, |figures| figures.full_temperature.as_ref());
-    let mut table =
-        Table::new(["run", "", "K1 variation ppm", "K1 ppm/K", "bias variation µg", "bias µg/K"]);
+    let mut table = Table::new(["run", "", "K1 variation ppm", "K1 ppm/K", "bias variation µg", "bias µg/K"]);
     for (run, raw, compensated) in &rows {
         for (what, figures) in [("raw", raw), ("compensated", compensated)] {
             table.row([

@@ -90,7 +90,8 @@ fn a_damaged_calibration_is_shown_as_what_a_device_would_refuse() {
     let mut bytes = fs::read(&path).expect("written");
     bytes[100] ^= 4;
     fs::write(&path, bytes).expect("a file");
-    let output = tempco(folder.path()).args(["inspect", "calibration.bin"]).assert().code(1).get_output().stdout.clone();
+    let output =
+        tempco(folder.path()).args(["inspect", "calibration.bin"]).assert().code(1).get_output().stdout.clone();
     assert!(String::from_utf8_lossy(&output).contains("A device would refuse this: corrupted"));
 }
 

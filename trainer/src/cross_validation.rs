@@ -75,7 +75,12 @@ pub fn cross_validate(
     };
     let by_level = leave_out(|row| row.reference_g, LEVEL_WIDTH_G)?;
     let by_temperature = leave_out(|row| f64::from(row.sample.temperature_uc) * 1e-6, TEMPERATURE_WIDTH_C)?;
-    Ok(CrossValidation { levels_ug: pooled_ug(&by_level), temperatures_ug: pooled_ug(&by_temperature), by_level, by_temperature })
+    Ok(CrossValidation {
+        levels_ug: pooled_ug(&by_level),
+        temperatures_ug: pooled_ug(&by_temperature),
+        by_level,
+        by_temperature,
+    })
 }
 
 fn pooled_ug(left_out: &[LeftOut]) -> Option<f64> {

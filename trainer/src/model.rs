@@ -208,11 +208,7 @@ impl Model {
         let model: Self = toml::from_str(&text)
             .map_err(|source| ModelError::Syntax { path: path.to_path_buf(), source: Box::new(source) })?;
         if model.format != Self::FORMAT {
-            return Err(ModelError::Format {
-                path: path.to_path_buf(),
-                found: model.format,
-                supported: Self::FORMAT,
-            });
+            return Err(ModelError::Format { path: path.to_path_buf(), found: model.format, supported: Self::FORMAT });
         }
         Ok(model)
     }
@@ -337,9 +333,10 @@ impl ModelEffect {
         }
         let channel = match (&self.channel, about.channel) {
             (None, None) => 0,
-            (Some(name), Some(_)) => channels.iter().position(|channel| channel == name).ok_or_else(|| {
-                DeviceLimit::Channel { effect: self.name.clone() }
-            })?,
+            (Some(name), Some(_)) => channels
+                .iter()
+                .position(|channel| channel == name)
+                .ok_or_else(|| DeviceLimit::Channel { effect: self.name.clone() })?,
             _ => return Err(DeviceLimit::Channel { effect: self.name.clone() }),
         };
         Ok(Term { effect: about.id, channel: u8::try_from(channel).unwrap_or(u8::MAX), parameters })
@@ -348,11 +345,7 @@ impl ModelEffect {
     fn wrong_coefficients(&self, about: &effect::About) -> DeviceLimit {
         let expected: Vec<_> = about.parameters.iter().map(|parameter| parameter.name).collect();
         let found: Vec<_> = self.parameters.keys().map(String::as_str).collect();
-        DeviceLimit::Coefficients {
-            effect: self.name.clone(),
-            found: found.join(", "),
-            expected: expected.join(", "),
-        }
+        DeviceLimit::Coefficients { effect: self.name.clone(), found: found.join(", "), expected: expected.join(", ") }
     }
 }
 

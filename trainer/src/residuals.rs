@@ -80,10 +80,7 @@ pub fn arranged(model: &Model, campaign: &Campaign) -> Result<Campaign, Campaign
 ///
 /// # Errors
 /// [`ResidualError`] says which model or row is at fault.
-pub fn residuals<'a>(
-    model: &Model,
-    runs: impl IntoIterator<Item = &'a Run>,
-) -> Result<Residuals<'a>, ResidualError> {
+pub fn residuals<'a>(model: &Model, runs: impl IntoIterator<Item = &'a Run>) -> Result<Residuals<'a>, ResidualError> {
     let blob = model.to_blob()?;
     let of = |run: &'a Run| {
         let readings = replay(&blob, run)?;

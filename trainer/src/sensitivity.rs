@@ -34,7 +34,8 @@ pub fn sensitivity(model: &Model, campaign: &Campaign) -> Option<Sensitivity> {
         return None;
     }
     let scale = InputScale::of(&campaign.runs)?;
-    let data: Vec<_> = campaign.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| merged(run, i, &scale)).collect();
+    let data: Vec<_> =
+        campaign.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| merged(run, i, &scale)).collect();
     let measured = Polynomial::fit(&data);
     let slope = |x: f64, t: f64| measured.slope(x, t) / scale.delta_f_half_span_hz;
     Some(over_domain(model, |delta_f_uhz, temperature_uc| {

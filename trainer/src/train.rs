@@ -59,13 +59,7 @@ impl TrainSettings {
     /// The default method with 30 restarts, as many as the paper makes.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
-        Self {
-            method: Method::SecondOrder,
-            restarts: 30,
-            seed,
-            scale_factor_hz_per_g: None,
-            serial: String::new(),
-        }
+        Self { method: Method::SecondOrder, restarts: 30, seed, scale_factor_hz_per_g: None, serial: String::new() }
     }
 }
 

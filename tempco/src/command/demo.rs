@@ -42,7 +42,12 @@ impl Demo {
         let scenario = Scenario::preset("clean").ok_or_else(|| Failure::new("no scenario named clean"))?;
         let recording = simulate::simulate(&scenario, self.seed)?;
         simulate::write(&recording, data)?;
-        anstream::println!("1. Measurements: {} rows in {} runs, {}", recording.rows(), recording.runs.len(), scenario.description);
+        anstream::println!(
+            "1. Measurements: {} rows in {} runs, {}",
+            recording.rows(),
+            recording.runs.len(),
+            scenario.description
+        );
         anstream::println!("   noise floor stated by the simulation: {:.2} µg", recording.noise_floor_ug());
         Ok(recording.noise_floor_ug())
     }
@@ -69,7 +74,11 @@ impl Demo {
             let trained = train_with_bar(campaign, split, &settings, name)?;
             let comparison = compare(&trained.model, campaign)?;
             if last.is_none() {
-                row("none: a line through the raw frequency", held_out_ug(campaign, split, |run| trained.raw_g(run)), None);
+                row(
+                    "none: a line through the raw frequency",
+                    held_out_ug(campaign, split, |run| trained.raw_g(run)),
+                    None,
+                );
                 let polynomial = held_out_ug(campaign, split, |run| trained.baseline.residuals_g(run));
                 row("polynomial Δf²·T³", polynomial, None);
             }
@@ -90,7 +99,10 @@ impl Demo {
         anstream::println!("3. Calibration exported: {} bytes{address}", bytes.len());
         let parity = verify::verify(&trained.model.to_blob()?, campaign)?;
         anstream::println!("4. Virtual instrument, over its own wire: {parity}\n");
-        anstream::println!("The files are in {}: model.toml, calibration.bin, calibration.hex, campaign.csv", self.output.display());
+        anstream::println!(
+            "The files are in {}: model.toml, calibration.bin, calibration.hex, campaign.csv",
+            self.output.display()
+        );
         anstream::println!("Look closer:  tempco compare {} {}", model.display(), data.display());
         anstream::println!("Repeat:       {}", verify::command_line(&model, data));
         Ok(if parity.identical == parity.samples { Answer::Yes } else { Answer::No })

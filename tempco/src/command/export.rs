@@ -9,7 +9,9 @@ use trainer::model::Model;
 
 /// Writes the model as the device stores it.
 #[derive(Args)]
-#[command(after_help = "Example:  tempco export model.toml -o calibration.hex && probe-rs download --binary-format hex calibration.hex --chip STM32F405RGTx")]
+#[command(
+    after_help = "Example:  tempco export model.toml -o calibration.hex && probe-rs download --binary-format hex calibration.hex --chip STM32F405RGTx"
+)]
 pub struct Export {
     /// Model file
     model: PathBuf,

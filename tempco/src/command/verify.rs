@@ -73,12 +73,7 @@ pub fn verify(blob: &Blob, campaign: &Campaign) -> Result<Parity, Failure> {
     Ok(parity)
 }
 
-fn verify_run(
-    blob: &Blob,
-    run: &Run,
-    instrument: &mut VirtualInstrument,
-    parity: &mut Parity,
-) -> Result<(), Failure> {
+fn verify_run(blob: &Blob, run: &Run, instrument: &mut VirtualInstrument, parity: &mut Parity) -> Result<(), Failure> {
     let samples: Vec<_> = run.rows.iter().map(|row| row.sample).collect();
     // A run begins as after power-on: the host's replay starts with empty memories too.
     instrument.exchange(Request::Restart)?;

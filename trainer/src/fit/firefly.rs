@@ -47,8 +47,7 @@ mod tests;
 
 pub use domain::Domain;
 pub use settings::{
-    Attraction, DistanceScale, Epsilon, ImprovedSettings, Perturbed, StandardSettings, StepDecay,
-    StepScale,
+    Attraction, DistanceScale, Epsilon, ImprovedSettings, Perturbed, StandardSettings, StepDecay, StepScale,
 };
 
 use annealing::Annealing;
@@ -64,9 +63,7 @@ pub enum FireflyError {
     #[error("the domain has no dimension; give at least one pair of bounds")]
     NoDimensions,
     /// Bounds that enclose nothing.
-    #[error(
-        "dimension {dimension} has bounds {lower} to {upper}; the lower must be below the upper, both finite"
-    )]
+    #[error("dimension {dimension} has bounds {lower} to {upper}; the lower must be below the upper, both finite")]
     Bounds {
         /// Counted from 0.
         dimension: usize,
@@ -203,11 +200,7 @@ struct Log<O> {
 
 impl<O: FnMut(usize, &Generation) -> ControlFlow<()>> Log<O> {
     fn new(archive: bool, observe: O) -> Self {
-        Self {
-            archive,
-            observe,
-            history: Vec::new(),
-        }
+        Self { archive, observe, history: Vec::new() }
     }
 
     fn run<F: FnMut(&[f64]) -> f64>(
@@ -228,27 +221,16 @@ impl<O: FnMut(usize, &Generation) -> ControlFlow<()>> Log<O> {
     }
 
     fn record<F: FnMut(&[f64]) -> f64>(&mut self, flock: &Flock<'_, F>) -> ControlFlow<()> {
-        let generation = Generation {
-            best: self.best(flock).cost,
-            mean: flock.mean_cost(),
-        };
+        let generation = Generation { best: self.best(flock).cost, mean: flock.mean_cost() };
         self.history.push(generation);
         (self.observe)(self.history.len() - 1, &generation)
     }
 
     fn best<'f, F: FnMut(&[f64]) -> f64>(&self, flock: &'f Flock<'_, F>) -> &'f flock::Firefly {
-        if self.archive {
-            flock.best_seen()
-        } else {
-            &flock.fireflies()[flock.brightest()]
-        }
+        if self.archive { flock.best_seen() } else { &flock.fireflies()[flock.brightest()] }
     }
 
-    fn finish<F: FnMut(&[f64]) -> f64>(
-        self,
-        flock: &Flock<'_, F>,
-        termination: Termination,
-    ) -> Swarm {
+    fn finish<F: FnMut(&[f64]) -> f64>(self, flock: &Flock<'_, F>, termination: Termination) -> Swarm {
         let best = self.best(flock);
         Swarm {
             best: best.position.clone(),

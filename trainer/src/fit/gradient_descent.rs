@@ -38,32 +38,18 @@ impl Settings {
     /// The paper's plain descent, with the two numbers that it does not print.
     #[must_use]
     pub fn paper(learning_rate: f64, iterations: usize) -> Self {
-        Self {
-            rate: LearningRate::Fixed(learning_rate),
-            momentum: 0.0,
-            iterations,
-            target_cost: None,
-        }
+        Self { rate: LearningRate::Fixed(learning_rate), momentum: 0.0, iterations, target_cost: None }
     }
 
     /// The bold driver from a first rate, without momentum.
     #[must_use]
     pub fn bold_driver(first_rate: f64, iterations: usize) -> Self {
-        Self {
-            rate: LearningRate::BoldDriver(first_rate),
-            ..Self::paper(first_rate, iterations)
-        }
+        Self { rate: LearningRate::BoldDriver(first_rate), ..Self::paper(first_rate, iterations) }
     }
 
     fn check(&self) -> Result<(), DescentError> {
         let (LearningRate::Fixed(rate) | LearningRate::BoldDriver(rate)) = self.rate;
-        let refuse = |setting, found, expected| {
-            Err(DescentError {
-                setting,
-                found,
-                expected,
-            })
-        };
+        let refuse = |setting, found, expected| Err(DescentError { setting, found, expected });
         if !(rate > 0.0 && rate.is_finite()) {
             return refuse("rate", rate, "finite and above 0");
         }
@@ -168,11 +154,7 @@ impl<'s, F: FnMut(&[f64], &mut [f64]) -> f64> Descent<'s, F> {
     fn new(mut cost_and_gradient: F, start: &[f64], settings: &'s Settings) -> Self {
         let mut gradient = vec![0.0; start.len()];
         let cost = cost_and_gradient(start, &mut gradient);
-        let here = Place {
-            point: start.to_vec(),
-            gradient,
-            cost,
-        };
+        let here = Place { point: start.to_vec(), gradient, cost };
         let (LearningRate::Fixed(rate) | LearningRate::BoldDriver(rate)) = settings.rate;
         Self {
             cost_and_gradient,
@@ -230,8 +212,7 @@ impl<'s, F: FnMut(&[f64], &mut [f64]) -> f64> Descent<'s, F> {
     /// move may still add up, unless the gradient is zero.
     fn stuck(&self) -> bool {
         self.trial.point == self.here.point
-            && (self.settings.momentum == 0.0
-                || self.here.gradient.iter().all(|slope| *slope == 0.0))
+            && (self.settings.momentum == 0.0 || self.here.gradient.iter().all(|slope| *slope == 0.0))
     }
 
     fn accept(&mut self) {
@@ -244,13 +225,7 @@ impl<'s, F: FnMut(&[f64], &mut [f64]) -> f64> Descent<'s, F> {
 
     fn finish(self, iterations: usize, termination: Termination) -> Minimum {
         let (point, cost) = self.best;
-        Minimum {
-            point,
-            cost,
-            history: self.history,
-            iterations,
-            termination,
-        }
+        Minimum { point, cost, history: self.history, iterations, termination }
     }
 }
 
@@ -270,10 +245,7 @@ mod tests {
         for (i, curvature) in CURVATURES.into_iter().enumerate() {
             gradient[i] = curvature * x[i];
         }
-        x.iter()
-            .zip(gradient)
-            .map(|(x, slope)| 0.5 * x * *slope)
-            .sum()
+        x.iter().zip(gradient).map(|(x, slope)| 0.5 * x * *slope).sum()
     }
 
     fn go_on(_: usize, _: f64) -> ControlFlow<()> {
@@ -326,10 +298,7 @@ mod tests {
         let lowest = minimum.history.iter().copied().reduce(f64::min);
         assert_eq!(Some(minimum.cost), lowest);
         assert_eq!(quadratic(&minimum.point, &mut [0.0; 3]), minimum.cost);
-        assert!(
-            descend(&Settings::paper(0.49, 2000)).cost < 1e-12,
-            "just below"
-        );
+        assert!(descend(&Settings::paper(0.49, 2000)).cost < 1e-12, "just below");
     }
 
     #[test]
@@ -381,11 +350,7 @@ mod tests {
 
     #[test]
     fn settings_out_of_range_are_refused_by_name() {
-        let with = |rate, momentum| Settings {
-            rate,
-            momentum,
-            ..Settings::paper(0.1, 10)
-        };
+        let with = |rate, momentum| Settings { rate, momentum, ..Settings::paper(0.1, 10) };
         let table = [
             ("rate", with(LearningRate::Fixed(0.0), 0.0)),
             ("rate", with(LearningRate::BoldDriver(f64::NAN), 0.0)),

@@ -78,9 +78,8 @@ mod tests {
 
     #[test]
     fn streams_of_neighbouring_seeds_and_indices_differ() {
-        let mut firsts: Vec<u64> = (0..40)
-            .flat_map(|seed| (0..40).map(move |index| stream(seed, index).next_u64()))
-            .collect();
+        let mut firsts: Vec<u64> =
+            (0..40).flat_map(|seed| (0..40).map(move |index| stream(seed, index).next_u64())).collect();
         firsts.sort_unstable();
         firsts.dedup();
         assert_eq!(firsts.len(), 40 * 40);
@@ -107,14 +106,8 @@ mod tests {
             cells[(value * 10.0) as usize] += 1;
         }
         let expected = DRAWS as f64 / 10.0;
-        let chi2: f64 = cells
-            .iter()
-            .map(|&n| (n as f64 - expected).powi(2) / expected)
-            .sum();
-        assert!(
-            chi2 < 27.9,
-            "χ² = {chi2}; 27.9 is exceeded once in 1000 by 9 degrees of freedom"
-        );
+        let chi2: f64 = cells.iter().map(|&n| (n as f64 - expected).powi(2) / expected).sum();
+        assert!(chi2 < 27.9, "χ² = {chi2}; 27.9 is exceeded once in 1000 by 9 degrees of freedom");
     }
 
     #[test]
@@ -139,10 +132,7 @@ mod tests {
             drawn.iter().for_each(|&item| taken[item] += 1);
         }
         // Each is drawn with probability 1/3: standard deviation √(9000·2/9) = 45.
-        assert!(
-            taken.iter().all(|&n| n.abs_diff(3000) < 4 * 45),
-            "{taken:?}"
-        );
+        assert!(taken.iter().all(|&n| n.abs_diff(3000) < 4 * 45), "{taken:?}");
     }
 
     #[test]

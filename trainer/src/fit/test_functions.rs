@@ -21,20 +21,12 @@ pub struct TestFunction {
 }
 
 /// Schaffer's function: concentric rings around the origin. The first ring's floor, at r ≈ π, is −0.9903.
-pub const SCHAFFER: TestFunction = TestFunction {
-    name: "Schaffer",
-    cost: schaffer,
-    minimum: -1.0,
-    global_basin: -0.995,
-};
+pub const SCHAFFER: TestFunction =
+    TestFunction { name: "Schaffer", cost: schaffer, minimum: -1.0, global_basin: -0.995 };
 
 /// Rastrigin's function: a parabola under a grid of dimples. The next lowest minima, at one unit, are 0.995.
-pub const RASTRIGIN: TestFunction = TestFunction {
-    name: "Rastrigin",
-    cost: rastrigin,
-    minimum: 0.0,
-    global_basin: 0.5,
-};
+pub const RASTRIGIN: TestFunction =
+    TestFunction { name: "Rastrigin", cost: rastrigin, minimum: 0.0, global_basin: 0.5 };
 
 impl TestFunction {
     /// Whether this cost can only belong to the basin of the global minimum.
@@ -56,9 +48,7 @@ pub fn schaffer(x: &[f64]) -> f64 {
 /// Σ (x² − 10 cos 2πx + 10); customary domain |x| ≤ 5.12.
 #[must_use]
 pub fn rastrigin(x: &[f64]) -> f64 {
-    x.iter()
-        .map(|v| v * v - 10.0 * (TAU * v).cos() + 10.0)
-        .sum()
+    x.iter().map(|v| v * v - 10.0 * (TAU * v).cos() + 10.0).sum()
 }
 
 #[cfg(test)]
@@ -69,12 +59,7 @@ mod tests {
     #[test]
     fn the_minima_are_the_papers() {
         for function in [SCHAFFER, RASTRIGIN] {
-            assert_eq!(
-                (function.cost)(&[0.0, 0.0]),
-                function.minimum,
-                "{}",
-                function.name
-            );
+            assert_eq!((function.cost)(&[0.0, 0.0]), function.minimum, "{}", function.name);
         }
     }
 
@@ -84,15 +69,8 @@ mod tests {
             let (sin, cos) = angle.sin_cos();
             schaffer(&[PI * cos, PI * sin])
         });
-        assert!(
-            on_the_first_ring
-                .iter()
-                .all(|cost| (cost + 0.990_275).abs() < 1e-6)
-        );
-        assert!(
-            (schaffer(&[FRAC_PI_2, 0.0]) + 0.002_458).abs() < 1e-6,
-            "the wall before it"
-        );
+        assert!(on_the_first_ring.iter().all(|cost| (cost + 0.990_275).abs() < 1e-6));
+        assert!((schaffer(&[FRAC_PI_2, 0.0]) + 0.002_458).abs() < 1e-6, "the wall before it");
     }
 
     #[test]
@@ -111,10 +89,7 @@ mod tests {
         };
         for (function, edge, far) in [(SCHAFFER, FRAC_PI_2, 20.0), (RASTRIGIN, 0.5, 5.12)] {
             let next = lowest_outside(function, edge, far);
-            assert!(
-                function.found(function.minimum) && !function.found(next),
-                "{next}"
-            );
+            assert!(function.found(function.minimum) && !function.found(next), "{next}");
         }
     }
 }

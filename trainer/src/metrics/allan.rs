@@ -48,8 +48,7 @@ pub fn allan(run: &Run, outputs_g: &[f64]) -> Option<Vec<AllanPoint>> {
 fn point(integral: &[f64], m: usize, interval_s: f64) -> AllanPoint {
     let samples = integral.len() - 1;
     let terms = samples - 2 * m + 1;
-    let squares: f64 =
-        (0..terms).map(|i| (integral[i + 2 * m] - 2.0 * integral[i + m] + integral[i]).powi(2)).sum();
+    let squares: f64 = (0..terms).map(|i| (integral[i + 2 * m] - 2.0 * integral[i + m] + integral[i]).powi(2)).sum();
     let width = m as f64;
     AllanPoint {
         tau_s: width * interval_s,

@@ -89,18 +89,13 @@ impl Problem {
             weight: noise.weight(datum.weight),
         };
         let runs = task.data.chunk_by(|a, b| a.run == b.run);
-        let group = |run: &[Datum]| Group {
-            rows: run.iter().map(row).collect(),
-            offset_variance: noise.run_variance(),
-        };
+        let group =
+            |run: &[Datum]| Group { rows: run.iter().map(row).collect(), offset_variance: noise.run_variance() };
         let groups: Vec<Group> = runs.map(group).collect();
         let unit_variance = (noise.sample_g / unit_g).powi(2);
         Self {
             slopes: slope_rows(task, &line, unit_g),
-            prior: Prior {
-                output: unit_variance / OUTPUT_SIZE.powi(2),
-                hidden: unit_variance / HIDDEN_SIZE.powi(2),
-            },
+            prior: Prior { output: unit_variance / OUTPUT_SIZE.powi(2), hidden: unit_variance / HIDDEN_SIZE.powi(2) },
             weight: groups.iter().flat_map(|group| &group.rows).map(|row| row.weight).sum(),
             groups,
             line,

@@ -16,36 +16,25 @@ pub(super) struct Annealing {
 impl Annealing {
     /// Resolves ε against the initial swarm's costs.
     pub(super) fn new(settings: &ImprovedSettings, costs: impl Iterator<Item = f64>) -> Self {
-        let (lowest, highest) = costs.filter(|cost| cost.is_finite()).fold(
-            (f64::INFINITY, f64::NEG_INFINITY),
-            |(lowest, highest), cost| (lowest.min(cost), highest.max(cost)),
-        );
+        let (lowest, highest) = costs
+            .filter(|cost| cost.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lowest, highest), cost| (lowest.min(cost), highest.max(cost)));
         let unit = match settings.epsilon {
             Epsilon::Absolute(_) => 1.0,
             _ if lowest > highest => 0.0,
             Epsilon::OfInitialSpread(_) => highest - lowest,
             Epsilon::OfInitialBest(_) => lowest.abs(),
         };
-        let (Epsilon::Absolute(epsilon)
-        | Epsilon::OfInitialSpread(epsilon)
-        | Epsilon::OfInitialBest(epsilon)) = settings.epsilon;
-        Self {
-            epsilon: epsilon * unit,
-            perturbed: settings.perturbed,
-            maxgen: settings.generations,
-        }
+        let (Epsilon::Absolute(epsilon) | Epsilon::OfInitialSpread(epsilon) | Epsilon::OfInitialBest(epsilon)) =
+            settings.epsilon;
+        Self { epsilon: epsilon * unit, perturbed: settings.perturbed, maxgen: settings.generations }
     }
 
     /// Perturbs firefly `best` in generation `n`, eqs. (9) and (10), and keeps the new place if eq. (7) says so.
     ///
     /// The paper states eq. (11) for the other fireflies only; it is applied here too, since the perturbation
     /// alone reaches half a width beyond the border.
-    pub(super) fn perturb<F: FnMut(&[f64]) -> f64>(
-        &self,
-        flock: &mut Flock<'_, F>,
-        best: usize,
-        n: usize,
-    ) {
+    pub(super) fn perturb<F: FnMut(&[f64]) -> f64>(&self, flock: &mut Flock<'_, F>, best: usize, n: usize) {
         let mut candidate = flock.fireflies()[best].position.clone();
         let amplitude = amplitude(n, self.maxgen);
         for dimension in chosen(self.perturbed, candidate.len(), flock.rng) {
@@ -102,15 +91,11 @@ mod tests {
         let mut rng = stream(1, 0);
         for (worse_by, temperature) in [(0.1, 0.5), (0.5, 0.5), (1.0, 0.25)] {
             let probability = f64::exp(-worse_by / temperature);
-            let accepted = (0..DRAWS)
-                .filter(|_| accepts(2.0, 2.0 + worse_by, temperature, random::unit(&mut rng)))
-                .count() as f64;
+            let accepted =
+                (0..DRAWS).filter(|_| accepts(2.0, 2.0 + worse_by, temperature, random::unit(&mut rng))).count() as f64;
             let deviation = (f64::from(DRAWS) * probability * (1.0 - probability)).sqrt();
             let off = (accepted - f64::from(DRAWS) * probability) / deviation;
-            assert!(
-                off.abs() < 4.0,
-                "ΔC/T = {worse_by}/{temperature}: {off} standard deviations"
-            );
+            assert!(off.abs() < 4.0, "ΔC/T = {worse_by}/{temperature}: {off} standard deviations");
         }
     }
 
@@ -137,20 +122,14 @@ mod tests {
     #[test]
     fn epsilon_takes_its_unit_from_the_initial_swarm() {
         let resolved = |epsilon, costs: &[f64]| {
-            let settings = ImprovedSettings {
-                epsilon,
-                ..ImprovedSettings::paper()
-            };
+            let settings = ImprovedSettings { epsilon, ..ImprovedSettings::paper() };
             Annealing::new(&settings, costs.iter().copied()).epsilon
         };
         let costs = [4.0, f64::INFINITY, 2.0, 10.0];
         assert_eq!(resolved(Epsilon::Absolute(0.5), &costs), 0.5);
         assert_eq!(resolved(Epsilon::OfInitialSpread(0.5), &costs), 4.0);
         assert_eq!(resolved(Epsilon::OfInitialBest(0.5), &costs), 1.0);
-        assert_eq!(
-            resolved(Epsilon::OfInitialSpread(0.5), &[f64::INFINITY]),
-            0.0
-        );
+        assert_eq!(resolved(Epsilon::OfInitialSpread(0.5), &[f64::INFINITY]), 0.0);
     }
 
     #[test]
@@ -161,14 +140,9 @@ mod tests {
             let mut picked = chosen(Perturbed::UpTo(3), 41, &mut rng);
             sizes[picked.len()] += 1;
             picked.sort_unstable();
-            assert!(
-                picked.windows(2).all(|pair| pair[0] < pair[1]) && picked.iter().all(|&d| d < 41)
-            );
+            assert!(picked.windows(2).all(|pair| pair[0] < pair[1]) && picked.iter().all(|&d| d < 41));
         }
-        assert!(
-            sizes[0] == 0 && sizes[1..].iter().all(|&n| n.abs_diff(1000) < 110),
-            "{sizes:?}"
-        );
+        assert!(sizes[0] == 0 && sizes[1..].iter().all(|&n| n.abs_diff(1000) < 110), "{sizes:?}");
         assert_eq!(chosen(Perturbed::All, 2, &mut rng), [0, 1]);
         assert_eq!(chosen(Perturbed::UpTo(3), 1, &mut rng), [0]);
     }

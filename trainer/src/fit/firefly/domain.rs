@@ -26,11 +26,7 @@ impl Domain {
             let (lower, upper) = (*bound.start(), *bound.end());
             let width = upper - lower;
             if !(width.is_finite() && width > 0.0) {
-                return Err(FireflyError::Bounds {
-                    dimension,
-                    lower,
-                    upper,
-                });
+                return Err(FireflyError::Bounds { dimension, lower, upper });
             }
         }
         Ok(Self {
@@ -73,8 +69,6 @@ impl Domain {
     /// A position drawn uniformly.
     pub(super) fn scatter(&self, rng: &mut Xoshiro256PlusPlus) -> Vec<f64> {
         let bounds = self.lower.iter().zip(&self.upper);
-        bounds
-            .map(|(lower, upper)| random::between(rng, *lower, *upper))
-            .collect()
+        bounds.map(|(lower, upper)| random::between(rng, *lower, *upper)).collect()
     }
 }

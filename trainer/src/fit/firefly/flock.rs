@@ -52,10 +52,7 @@ impl<'a, F: FnMut(&[f64]) -> f64> Flock<'a, F> {
             objective,
             fireflies: Vec::with_capacity(population),
             previous: Vec::new(),
-            best_seen: Firefly {
-                position: Vec::new(),
-                cost: f64::INFINITY,
-            },
+            best_seen: Firefly { position: Vec::new(), cost: f64::INFINITY },
             evaluations: 0,
             others: Vec::with_capacity(population),
         };
@@ -74,10 +71,7 @@ impl<'a, F: FnMut(&[f64]) -> f64> Flock<'a, F> {
         let cost = (self.objective)(position);
         let cost = if cost.is_nan() { f64::INFINITY } else { cost };
         if cost < self.best_seen.cost || self.best_seen.position.is_empty() {
-            self.best_seen = Firefly {
-                position: position.to_vec(),
-                cost,
-            };
+            self.best_seen = Firefly { position: position.to_vec(), cost };
         }
         cost
     }
@@ -109,13 +103,7 @@ impl<'a, F: FnMut(&[f64]) -> f64> Flock<'a, F> {
         for &other in &self.others {
             let target = &self.previous[other];
             if target.cost < brightness {
-                pull(
-                    &mut position,
-                    &target.position,
-                    movement,
-                    self.domain,
-                    self.rng,
-                );
+                pull(&mut position, &target.position, movement, self.domain, self.rng);
                 pulled = true;
             }
         }
@@ -132,8 +120,7 @@ impl<'a, F: FnMut(&[f64]) -> f64> Flock<'a, F> {
     /// Lists in `others` whom firefly `index` looks at, in scan order or, when selected, in drawn order.
     fn select(&mut self, index: usize, selected: Option<usize>) {
         self.others.clear();
-        self.others
-            .extend((0..self.fireflies.len()).filter(|&other| other != index));
+        self.others.extend((0..self.fireflies.len()).filter(|&other| other != index));
         if let Some(count) = selected {
             random::draw(self.rng, &mut self.others, count);
             self.others.truncate(count);
@@ -148,13 +135,8 @@ impl<'a, F: FnMut(&[f64]) -> f64> Flock<'a, F> {
 
     /// The brightest of the present generation, the first among equals.
     pub(super) fn brightest(&self) -> usize {
-        (1..self.fireflies.len()).fold(0, |best, index| {
-            if self.fireflies[index].cost < self.fireflies[best].cost {
-                index
-            } else {
-                best
-            }
-        })
+        (1..self.fireflies.len())
+            .fold(0, |best, index| if self.fireflies[index].cost < self.fireflies[best].cost { index } else { best })
     }
 
     pub(super) fn mean_cost(&self) -> f64 {
@@ -184,13 +166,7 @@ impl<'a, F: FnMut(&[f64]) -> f64> Flock<'a, F> {
 }
 
 /// One term of eq. (5): X_i + β·(X_j − X_i) + α·(ξ − ½).
-fn pull(
-    position: &mut [f64],
-    target: &[f64],
-    movement: &Movement,
-    domain: &Domain,
-    rng: &mut Xoshiro256PlusPlus,
-) {
+fn pull(position: &mut [f64], target: &[f64], movement: &Movement, domain: &Domain, rng: &mut Xoshiro256PlusPlus) {
     let beta = movement.attraction.strength(domain, position, target);
     for ((x, goal), alpha) in position.iter_mut().zip(target).zip(&movement.step) {
         *x += beta * (goal - *x) + alpha * random::centred(rng);

@@ -43,26 +43,14 @@ impl Algorithm {
                 / SEEDS as f64;
             let variance = (expected * (100.0 - expected)).max(100.0 / SEEDS as f64);
             let deviation = (variance * (1.0 / SEEDS as f64 + 1.0 / REFERENCE_SEEDS)).sqrt();
-            println!(
-                "{} |x| ≤ {half_width}: {found:.1} %, reference {expected} % ± {deviation:.1}",
-                function.name
-            );
-            assert!(
-                (found - expected).abs() < DEVIATIONS * deviation,
-                "{} |x| ≤ {half_width}",
-                function.name
-            );
+            println!("{} |x| ≤ {half_width}: {found:.1} %, reference {expected} % ± {deviation:.1}", function.name);
+            assert!((found - expected).abs() < DEVIATIONS * deviation, "{} |x| ≤ {half_width}", function.name);
         }
     }
 
     /// Mean cost of the last generation's fireflies, over 200 seeds.
     fn mean_of_swarms(&self, function: TestFunction, half_width: f64) -> f64 {
-        let last = |seed| {
-            self.search(function, half_width, seed)
-                .history
-                .last()
-                .map(|last| last.mean)
-        };
+        let last = |seed| self.search(function, half_width, seed).history.last().map(|last| last.mean);
         (0..200).filter_map(last).sum::<f64>() / 200.0
     }
 }
@@ -76,10 +64,7 @@ fn scaled_standard() -> StandardSettings {
 }
 
 fn non_recursive() -> ImprovedSettings {
-    ImprovedSettings {
-        decay: StepDecay::NonRecursive,
-        ..ImprovedSettings::paper()
-    }
+    ImprovedSettings { decay: StepDecay::NonRecursive, ..ImprovedSettings::paper() }
 }
 
 fn scaled_improved() -> ImprovedSettings {
@@ -92,16 +77,8 @@ fn scaled_improved() -> ImprovedSettings {
 
 #[test]
 fn random_points() {
-    let settings = ImprovedSettings {
-        population: 510,
-        generations: 0,
-        ..ImprovedSettings::paper()
-    };
-    Algorithm::Improved(settings).assert_rates(&[
-        (RASTRIGIN, 1.0, 63.5),
-        (RASTRIGIN, 2.0, 21.9),
-        (SCHAFFER, 5.0, 7.5),
-    ]);
+    let settings = ImprovedSettings { population: 510, generations: 0, ..ImprovedSettings::paper() };
+    Algorithm::Improved(settings).assert_rates(&[(RASTRIGIN, 1.0, 63.5), (RASTRIGIN, 2.0, 21.9), (SCHAFFER, 5.0, 7.5)]);
 }
 
 #[test]
@@ -116,8 +93,7 @@ fn standard_as_printed() {
 
 #[test]
 fn standard_in_units_of_the_domain() {
-    Algorithm::Standard(scaled_standard())
-        .assert_rates(&[(RASTRIGIN, 5.12, 29.1), (SCHAFFER, 5.0, 2.1)]);
+    Algorithm::Standard(scaled_standard()).assert_rates(&[(RASTRIGIN, 5.12, 29.1), (SCHAFFER, 5.0, 2.1)]);
 }
 
 #[test]
@@ -131,8 +107,7 @@ fn improved_as_printed() {
 
 #[test]
 fn improved_without_recursion() {
-    Algorithm::Improved(non_recursive())
-        .assert_rates(&[(RASTRIGIN, 1.0, 79.7), (SCHAFFER, 2.0, 78.6)]);
+    Algorithm::Improved(non_recursive()).assert_rates(&[(RASTRIGIN, 1.0, 79.7), (SCHAFFER, 2.0, 78.6)]);
 }
 
 #[test]
@@ -142,10 +117,7 @@ fn improved_in_units_of_the_domain() {
         (RASTRIGIN, 1.0, 65.0),
         (SCHAFFER, 5.0, 0.2),
     ]);
-    let archive = ImprovedSettings {
-        archive: true,
-        ..scaled_improved()
-    };
+    let archive = ImprovedSettings { archive: true, ..scaled_improved() };
     Algorithm::Improved(archive).assert_rates(&[(SCHAFFER, 5.0, 3.4)]);
 }
 
@@ -154,22 +126,13 @@ fn improved_in_units_of_the_domain() {
 fn the_improved_swarm_gathers_and_the_standard_one_does_not() {
     let standard = Algorithm::Standard(scaled_standard());
     let improved = Algorithm::Improved(scaled_improved());
-    let means = [
-        (RASTRIGIN, 5.12, 19.4, 0.75, 0.2),
-        (SCHAFFER, 10.0, -0.519, -0.982, 0.04),
-    ];
+    let means = [(RASTRIGIN, 5.12, 19.4, 0.75, 0.2), (SCHAFFER, 10.0, -0.519, -0.982, 0.04)];
     for (function, half_width, reference, reference_improved, tolerance) in means {
         let mean = standard.mean_of_swarms(function, half_width);
         let mean_improved = improved.mean_of_swarms(function, half_width);
-        println!(
-            "{}: standard {mean:.3}, improved {mean_improved:.3}",
-            function.name
-        );
+        println!("{}: standard {mean:.3}, improved {mean_improved:.3}", function.name);
         assert!((mean / reference - 1.0).abs() < 0.1, "standard: {mean}");
-        assert!(
-            (mean_improved - reference_improved).abs() < tolerance,
-            "improved: {mean_improved}"
-        );
+        assert!((mean_improved - reference_improved).abs() < tolerance, "improved: {mean_improved}");
     }
 }
 
@@ -182,9 +145,7 @@ fn network_error(w: &[f64]) -> f64 {
         let target = 0.9 * f + 0.05 * t + 0.02 * f * t + 0.05 * t * t * f;
         w[40] + hidden.sum::<f64>() - target
     };
-    let sum: f64 = nodes()
-        .flat_map(|f| nodes().map(move |t| residual(f, t).powi(2)))
-        .sum();
+    let sum: f64 = nodes().flat_map(|f| nodes().map(move |t| residual(f, t).powi(2))).sum();
     sum / f64::from(NODES * NODES)
 }
 
@@ -194,43 +155,20 @@ fn among_a_networks_weights_the_printed_algorithm_loses_to_random_points() {
     let domain = Domain::cube(41, &(-1.0..=1.0)).unwrap();
     let median = |settings: ImprovedSettings| {
         let watch = |_, _: &Generation| ControlFlow::Continue(());
-        let cost = |seed| {
-            improved(
-                network_error,
-                &domain,
-                &settings,
-                &mut stream(41, seed),
-                watch,
-            )
-            .unwrap()
-            .best_cost
-        };
+        let cost = |seed| improved(network_error, &domain, &settings, &mut stream(41, seed), watch).unwrap().best_cost;
         let mut costs: Vec<f64> = (0..RUNS).map(cost).collect();
         costs.sort_by(f64::total_cmp);
         costs[costs.len() / 2]
     };
     let recommended = ImprovedSettings::recommended();
     let printed = median(ImprovedSettings::paper());
-    let random = median(ImprovedSettings {
-        population: 450,
-        generations: 0,
-        ..recommended
-    });
-    let greedy = median(ImprovedSettings {
-        epsilon: Epsilon::Absolute(0.0),
-        ..recommended
-    });
-    let per_width = median(ImprovedSettings {
-        attraction: Attraction::unit(DistanceScale::Width),
-        ..recommended
-    });
+    let random = median(ImprovedSettings { population: 450, generations: 0, ..recommended });
+    let greedy = median(ImprovedSettings { epsilon: Epsilon::Absolute(0.0), ..recommended });
+    let per_width = median(ImprovedSettings { attraction: Attraction::unit(DistanceScale::Width), ..recommended });
     let recommended = median(recommended);
     println!("printed {printed:.4}, random {random:.4}, r/s {per_width:.4}");
     println!("recommended {recommended:.4}, without Metropolis {greedy:.4}");
     assert!(printed > 1.5 * random && random > 4.0 * recommended);
     assert!(per_width > 3.0 * recommended, "r² grows with D");
-    assert!(
-        greedy < 1.25 * recommended,
-        "the Metropolis criterion is no help"
-    );
+    assert!(greedy < 1.25 * recommended, "the Metropolis criterion is no help");
 }

@@ -46,11 +46,7 @@ impl StepDecay {
     pub fn factor(self, k: f64, n: usize, maxgen: usize) -> f64 {
         let printed = |n: usize| {
             let left = maxgen.saturating_sub(n) as f64;
-            if left > 0.0 {
-                k * (-(n as f64) / left).exp()
-            } else {
-                0.0
-            }
+            if left > 0.0 { k * (-(n as f64) / left).exp() } else { 0.0 }
         };
         match self {
             Self::Constant => 1.0,
@@ -95,11 +91,7 @@ impl Attraction {
     /// The paper's β₀ = γ = 1 with a chosen meaning of r².
     #[must_use]
     pub fn unit(distance: DistanceScale) -> Self {
-        Self {
-            beta0: 1.0,
-            gamma: 1.0,
-            distance,
-        }
+        Self { beta0: 1.0, gamma: 1.0, distance }
     }
 
     /// β = β₀·exp(−γ r²) between two positions, eq. (4).
@@ -108,10 +100,9 @@ impl Attraction {
         let differences = from.iter().zip(to).map(|(a, b)| a - b);
         let r2: f64 = match self.distance {
             DistanceScale::Raw => differences.map(|d| d * d).sum(),
-            DistanceScale::Width | DistanceScale::Domain => differences
-                .zip(domain.widths())
-                .map(|(d, s)| (d / s) * (d / s))
-                .sum(),
+            DistanceScale::Width | DistanceScale::Domain => {
+                differences.zip(domain.widths()).map(|(d, s)| (d / s) * (d / s)).sum()
+            }
         };
         let dimensions = match self.distance {
             DistanceScale::Raw | DistanceScale::Width => 1.0,
@@ -241,9 +232,8 @@ impl ImprovedSettings {
         if let Perturbed::UpTo(count) = self.perturbed {
             check_count("perturbed", count)?;
         }
-        let (Epsilon::Absolute(epsilon)
-        | Epsilon::OfInitialSpread(epsilon)
-        | Epsilon::OfInitialBest(epsilon)) = self.epsilon;
+        let (Epsilon::Absolute(epsilon) | Epsilon::OfInitialSpread(epsilon) | Epsilon::OfInitialBest(epsilon)) =
+            self.epsilon;
         check_number("epsilon", epsilon)?;
         check_number("alpha0", self.alpha0)?;
         check_number("k", self.k)

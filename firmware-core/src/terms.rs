@@ -1,0 +1,143 @@
+//! The effects of a calibration at work: their coefficients and what they remember.
+//!
+//! Apart from the compensator because training runs the same effects over measurements whose level
+//! is known from the reference, without a network.
+
+use crate::compensator::LoadError;
+use crate::effect::{self, Coefficients, Disturbance, Effect, Moment, Signal};
+use crate::memory::{Memory, State};
+use crate::observe::{Clock, Observation, Step};
+use crate::real::Real;
+use heapless::Vec;
+use protocol::limits::{MAX_CHANNELS, MAX_PARAMETERS, MAX_TERMS};
+use protocol::{Sample, Status};
+
+/// Effects with coefficients and memories.
+#[derive(Clone)]
+pub struct Terms<R: Real> {
+    clock: Clock,
+    terms: Vec<Term<R>, MAX_TERMS>,
+}
+
+#[derive(Clone)]
+struct Term<R: Real> {
+    effect: &'static dyn Effect<R>,
+    coefficients: Coefficients<R>,
+    channel: usize,
+    memory: Memory<R>,
+    state: State<R>,
+}
+
+impl<R: Real> Terms<R> {
+    /// No effects; memories start anew after a gap of more than `max_gap_us`.
+    #[must_use]
+    pub const fn new(max_gap_us: u32) -> Self {
+        Self { clock: Clock::new(max_gap_us), terms: Vec::new() }
+    }
+
+    /// Adds the effect of number `id`, which follows entry `channel` of `channels` if it follows one.
+    ///
+    /// # Errors
+    /// [`LoadError`] if it is unknown, takes other coefficients, or there is no room.
+    pub fn push(
+        &mut self,
+        id: u16,
+        channel: usize,
+        channels: usize,
+        parameters: impl ExactSizeIterator<Item = R>,
+    ) -> Result<(), LoadError> {
+        let effect = effect::find::<R>(id).ok_or(LoadError::UnknownEffect(id))?;
+        let (found, expected) = (parameters.len(), effect.coefficients());
+        if found != expected {
+            return Err(LoadError::Coefficients { effect: id, found, expected });
+        }
+        if effect.signal() == Signal::Channel && channel >= channels.min(MAX_CHANNELS) {
+            return Err(LoadError::Channel { effect: id });
+        }
+        let mut coefficients = [R::ZERO; MAX_PARAMETERS];
+        coefficients.iter_mut().zip(parameters).for_each(|(slot, value)| *slot = value);
+        let memory = effect.memory(&coefficients);
+        let term = Term { effect, coefficients, channel, memory, state: State::REST };
+        self.terms.push(term).map_err(|_| LoadError::TooManyEffects)
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// Forgets the past.
+    pub fn restart(&mut self) {
+        self.clock.restart();
+        self.terms.iter_mut().for_each(|term| term.state = State::REST);
+    }
+
+    /// Takes the next sample into the memories; returns what to flag.
+    pub fn advance(&mut self, sample: &Sample) -> Status {
+        let (step, last, mut status) = self.clock.step(sample);
+        for term in &mut self.terms {
+            term.remember(step, sample, last.as_ref());
+            status |= term.flags(sample);
+        }
+        status
+    }
+
+    /// What the effects do to the resonators at this moment.
+    pub fn disturbance(&self, now: &Observation<R>, level_g: R) -> Disturbance<R> {
+        let mut sum = Disturbance::NONE;
+        for term in &self.terms {
+            sum += term.effect.disturb(&term.moment(now, level_g), &term.coefficients);
+        }
+        sum
+    }
+
+    /// What the effects add to the output at this moment, g.
+    pub fn bias_g(&self, now: &Observation<R>, level_g: R) -> R {
+        let mut sum = R::ZERO;
+        for term in &self.terms {
+            sum += term.effect.bias_g(&term.moment(now, level_g), &term.coefficients);
+        }
+        sum
+    }
+}
+
+impl<R: Real> Term<R> {
+    fn remember(&mut self, step: Step, sample: &Sample, last: Option<&Sample>) {
+        match (step, last) {
+            (Step::Anew, _) => self.state = State::REST,
+            (Step::Forward(gap_us), Some(last)) => {
+                let dt_s = R::from_micro(i64::try_from(gap_us).unwrap_or(i64::MAX));
+                self.state.advance(&self.memory, self.increment(sample, last), dt_s);
+            }
+            _ => {}
+        }
+    }
+
+    /// By how much the signal that this effect follows changed, differenced as integers.
+    fn increment(&self, sample: &Sample, last: &Sample) -> R {
+        match self.effect.signal() {
+            Signal::Temperature => R::from_micro(i64::from(sample.temperature_uc) - i64::from(last.temperature_uc)),
+            Signal::Channel => {
+                let of = |sample: &Sample| sample.channels.get(self.channel).copied().unwrap_or(0);
+                R::from_micro(of(sample).saturating_sub(of(last)))
+            }
+        }
+    }
+
+    fn moment<'a>(&self, now: &'a Observation<R>, level_g: R) -> Moment<'a, R> {
+        Moment {
+            now,
+            departure: self.state.departure(),
+            channel: now.channels.get(self.channel).copied().unwrap_or(R::ZERO),
+            level_g,
+        }
+    }
+
+    fn flags(&self, sample: &Sample) -> Status {
+        let mut status = Status::empty();
+        status.set(Status::SETTLING, self.memory != Memory::None && !self.state.is_settled());
+        status.set(Status::CHANNEL_MISSING, self.effect.needs_age() && sample.age_s.is_none());
+        status
+    }
+}
