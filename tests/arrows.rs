@@ -22,12 +22,12 @@ fn manifest(folder: &str) -> Table {
 /// The crates of this workspace that a manifest names in any of its dependency tables.
 fn internal_dependencies(folder: &str) -> BTreeSet<String> {
     let manifest = manifest(folder);
-    let targets = manifest.get("target").and_then(|targets| targets.as_table()).into_iter().flatten();
+    let targets = manifest.get("target").and_then(toml::Value::as_table).into_iter().flatten();
     let tables = targets.filter_map(|(_, target)| target.as_table()).chain([&manifest]);
     tables
         .flat_map(|table| ["dependencies", "dev-dependencies", "build-dependencies"].map(|kind| table.get(kind)))
         .flatten()
-        .filter_map(|dependencies| dependencies.as_table())
+        .filter_map(toml::Value::as_table)
         .flat_map(|dependencies| dependencies.keys().cloned())
         .filter(|name| MAY_DEPEND_ON.iter().any(|(member, _)| member == name))
         .collect()
@@ -61,7 +61,7 @@ fn only_the_drawn_arrows_exist() {
 fn the_table_of_arrows_names_every_member_of_the_workspace() {
     let workspace = manifest(".");
     let members = workspace["workspace"]["members"].as_array().expect("a list of members");
-    let members: BTreeSet<_> = members.iter().filter_map(|member| member.as_str()).collect();
+    let members: BTreeSet<_> = members.iter().filter_map(toml::Value::as_str).collect();
     assert_eq!(members, MAY_DEPEND_ON.iter().map(|(member, _)| *member).collect());
 }
 
@@ -96,7 +96,7 @@ fn what_runs_on_the_device_is_written_without_std_alloc_unsafe_and_panics() {
 fn unsafe_code_is_forbidden_everywhere_but_on_the_board() {
     for (folder, _) in MAY_DEPEND_ON {
         let manifest = manifest(folder);
-        let inherits = manifest["lints"].get("workspace").and_then(|value| value.as_bool()) == Some(true);
+        let inherits = manifest["lints"].get("workspace").and_then(toml::Value::as_bool) == Some(true);
         assert!(inherits || folder == "firmware", "{folder} must inherit the workspace's lints");
     }
     let offenders = files_with("firmware/src", &["unsafe"]);

@@ -12,6 +12,8 @@ use proptest::prelude::*;
 use protocol::{Decoder, Envelope, Reading, Refusal, Request, Response, Sample, Status, encode_frame, encode_request};
 use tests::{example, golden};
 
+/// The effect that follows a channel.
+const SUPPLY_VOLTAGE: u16 = 6;
 const F1_HZ: f64 = 41_238.0;
 const F2_HZ: f64 = 41_162.0;
 const ROOM_C: f64 = 25.0;
@@ -76,6 +78,22 @@ fn a_reading_is_a_number_exactly_where_no_fatal_flag_is_raised() {
 }
 
 #[test]
+fn an_effect_whose_channel_was_not_measured_is_left_out_and_flagged() {
+    let mut without = example::blob();
+    without.terms.retain(|term| term.effect != SUPPLY_VOLTAGE);
+    let mut with = Compensator::load(&example::blob()).expect("the example is sound");
+    let mut without = Compensator::load(&without).expect("the example is sound");
+    for mut sample in example::samples(200) {
+        sample.channels[0] = Sample::NOT_MEASURED;
+        let expected = without.compensate(&sample);
+        let found = with.compensate(&sample);
+        assert_eq!(found.acceleration_g.to_bits(), expected.acceleration_g.to_bits());
+        let missing = if sample.faults.intersects(Status::FATAL) { Status::empty() } else { Status::CHANNEL_MISSING };
+        assert_eq!(found.status, expected.status | missing);
+    }
+}
+
+#[test]
 fn an_uncalibrated_instrument_says_so_and_gives_no_number() {
     let mut instrument = VirtualInstrument::new(example::SERIAL);
     let samples = example::samples(100);
@@ -95,6 +113,8 @@ fn a_live_measurement_is_the_compensation_of_what_the_drivers_read() {
         instrument.set_time_us(u64::from(second) * 1_000_000);
         let (sample, reading) = instrument.measure().expect("a perfect line");
         assert_eq!((sample.time_us, sample.faults), (u64::from(second) * 1_000_000, Status::empty()));
+        // The example knows an effect of the supply voltage, which this instrument does not measure.
+        assert!(reading.status.contains(Status::CHANNEL_MISSING));
         // 7.8125 m°C is a step of the thermometer, 1 mHz more than two counts of the counter.
         assert!((f64::from(sample.temperature_uc) * 1e-6 - ROOM_C - f64::from(second) * 0.31).abs() <= 0.003_907);
         assert!((sample.delta_f_uhz as f64 * 1e-6 - (F1_HZ - F2_HZ) - f64::from(second) * 1.7).abs() <= 0.001);

@@ -128,12 +128,25 @@ pub struct Parameter {
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
+    /// How a fit treats it.
+    pub role: Role,
     /// Where a fit starts.
     pub start: f64,
     /// The least value that makes physical sense.
     pub low: f64,
     /// The greatest value that makes physical sense.
     pub high: f64,
+}
+
+/// How a fit treats a coefficient.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The effect is proportional to it and vanishes with it.
+    Amplitude,
+    /// It shapes the effect: a time constant or a width, positive, searched on a logarithmic scale.
+    Shape,
+    /// Where the effect's channel counts from. A fit can't tell it from the bias: the channel's mean is taken.
+    Origin,
 }
 
 macro_rules! registry {

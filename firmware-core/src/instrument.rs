@@ -7,7 +7,7 @@ use crate::thermometer::{Thermometer, ThermometerError};
 use embedded_hal::i2c::I2c;
 use embedded_hal::spi::SpiDevice;
 use heapless::{String, Vec};
-use protocol::limits::{MAX_BLOB, MAX_CHUNK, MAX_NAME};
+use protocol::limits::{MAX_BLOB, MAX_CHANNELS, MAX_CHUNK, MAX_NAME};
 use protocol::{
     Blob, Decoder, Envelope, FrameError, Identity, InstrumentState, Line, Reading, Refusal, Request, Response, Sample,
     Status, encode_response,
@@ -40,6 +40,8 @@ impl<SPI: SpiDevice, I2C: I2c> Sensors<SPI, I2C> {
             None => Sample::from_difference(time_us, 0, temperature_uc),
         };
         sample.faults = frequency_fault | temperature_fault;
+        // Nothing here measures them yet; a calibration that needs one flags it.
+        sample.channels = [Sample::NOT_MEASURED; MAX_CHANNELS];
         sample
     }
 }

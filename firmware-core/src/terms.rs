@@ -26,6 +26,7 @@ struct Term<R: Real> {
     channel: usize,
     memory: Memory<R>,
     state: State<R>,
+    measured: bool,
 }
 
 impl<R: Real> Terms<R> {
@@ -57,7 +58,7 @@ impl<R: Real> Terms<R> {
         let mut coefficients = [R::ZERO; MAX_PARAMETERS];
         coefficients.iter_mut().zip(parameters).for_each(|(slot, value)| *slot = value);
         let memory = effect.memory(&coefficients);
-        let term = Term { effect, coefficients, channel, memory, state: State::REST };
+        let term = Term { effect, coefficients, channel, memory, state: State::REST, measured: false };
         self.terms.push(term).map_err(|_| LoadError::TooManyEffects)
     }
 
@@ -78,7 +79,7 @@ impl<R: Real> Terms<R> {
         let (step, last, mut status) = self.clock.step(sample);
         for term in &mut self.terms {
             term.remember(step, sample, last.as_ref());
-            status |= term.flags(sample);
+            status |= term.flags();
         }
         status
     }
@@ -86,7 +87,7 @@ impl<R: Real> Terms<R> {
     /// What the effects do to the resonators at this moment.
     pub fn disturbance(&self, now: &Observation<R>, level_g: R) -> Disturbance<R> {
         let mut sum = Disturbance::NONE;
-        for term in &self.terms {
+        for term in self.terms.iter().filter(|term| term.measured) {
             sum += term.effect.disturb(&term.moment(now, level_g), &term.coefficients);
         }
         sum
@@ -95,7 +96,7 @@ impl<R: Real> Terms<R> {
     /// What the effects add to the output at this moment, g.
     pub fn bias_g(&self, now: &Observation<R>, level_g: R) -> R {
         let mut sum = R::ZERO;
-        for term in &self.terms {
+        for term in self.terms.iter().filter(|term| term.measured) {
             sum += term.effect.bias_g(&term.moment(now, level_g), &term.coefficients);
         }
         sum
@@ -104,24 +105,32 @@ impl<R: Real> Terms<R> {
 
 impl<R: Real> Term<R> {
     fn remember(&mut self, step: Step, sample: &Sample, last: Option<&Sample>) {
+        self.measured = self.is_measured(sample);
         match (step, last) {
-            (Step::Anew, _) => self.state = State::REST,
-            (Step::Forward(gap_us), Some(last)) => {
+            (Step::Held, _) => {}
+            (Step::Forward(gap_us), Some(last)) if self.measured && self.is_measured(last) => {
                 let dt_s = R::from_micro(i64::try_from(gap_us).unwrap_or(i64::MAX));
                 self.state.advance(&self.memory, self.increment(sample, last), dt_s);
             }
-            _ => {}
+            _ => self.state = State::REST,
         }
+    }
+
+    /// Whether the sample has what this effect depends on.
+    fn is_measured(&self, sample: &Sample) -> bool {
+        let aged = !self.effect.needs_age() || sample.age_s.is_some();
+        aged && (self.effect.signal() != Signal::Channel || self.channel_of(sample) != Sample::NOT_MEASURED)
+    }
+
+    fn channel_of(&self, sample: &Sample) -> i64 {
+        sample.channels.get(self.channel).copied().unwrap_or(Sample::NOT_MEASURED)
     }
 
     /// By how much the signal that this effect follows changed, differenced as integers.
     fn increment(&self, sample: &Sample, last: &Sample) -> R {
         match self.effect.signal() {
             Signal::Temperature => R::from_micro(i64::from(sample.temperature_uc) - i64::from(last.temperature_uc)),
-            Signal::Channel => {
-                let of = |sample: &Sample| sample.channels.get(self.channel).copied().unwrap_or(0);
-                R::from_micro(of(sample).saturating_sub(of(last)))
-            }
+            Signal::Channel => R::from_micro(self.channel_of(sample).saturating_sub(self.channel_of(last))),
         }
     }
 
@@ -134,10 +143,10 @@ impl<R: Real> Term<R> {
         }
     }
 
-    fn flags(&self, sample: &Sample) -> Status {
+    fn flags(&self) -> Status {
         let mut status = Status::empty();
         status.set(Status::SETTLING, self.memory != Memory::None && !self.state.is_settled());
-        status.set(Status::CHANNEL_MISSING, self.effect.needs_age() && sample.age_s.is_none());
+        status.set(Status::CHANNEL_MISSING, !self.measured);
         status
     }
 }

@@ -23,13 +23,17 @@ pub struct Sample {
     pub sum_f_uhz: Option<u64>,
     /// Thermometer, µ°C.
     pub temperature_uc: i32,
-    /// Auxiliary channels in millionths of their unit, in the order that the calibration names them.
+    /// Auxiliary channels in millionths of their unit, in the order that the calibration names them;
+    /// [`Sample::NOT_MEASURED`] where nobody measured.
     pub channels: [i64; MAX_CHANNELS],
     /// What the drivers had to say of this instant.
     pub faults: Status,
 }
 
 impl Sample {
+    /// The value of a channel that nobody measured: no channel can have it, and zero would be a value.
+    pub const NOT_MEASURED: i64 = i64::MIN;
+
     /// A sample of the two resonators' frequencies, everything else at zero.
     #[must_use]
     pub const fn from_pair(time_us: u64, f1_uhz: u64, f2_uhz: u64, temperature_uc: i32) -> Self {

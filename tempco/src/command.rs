@@ -1,10 +1,13 @@
 //! One verb, one file.
 
+mod add;
+mod change;
 mod compare;
 mod demo;
 mod effects;
 mod export;
 mod inspect;
+mod remove;
 mod simulate;
 mod train;
 mod verify;
@@ -20,6 +23,8 @@ pub enum Command {
     Train(train::Train),
     Compare(compare::Compare),
     Effects(effects::Effects),
+    Add(add::Add),
+    Remove(remove::Remove),
     Export(export::Export),
     Inspect(inspect::Inspect),
     Verify(verify::Verify),
@@ -33,6 +38,8 @@ impl Command {
             Self::Train(command) => command.run(),
             Self::Compare(command) => command.run(),
             Self::Effects(command) => command.run(),
+            Self::Add(command) => command.run(),
+            Self::Remove(command) => command.run(),
             Self::Export(command) => command.run(),
             Self::Inspect(command) => command.run(),
             Self::Verify(command) => command.run(),

@@ -71,6 +71,7 @@ macro_rules! plain {
 }
 
 plain!(
+    trainer::cross_validation::CrossValidationError,
     trainer::model::ModelError,
     trainer::model::DeviceLimit,
     trainer::residuals::ResidualError,

@@ -3,6 +3,7 @@
 use crate::table::Table;
 use std::fmt::Write;
 use trainer::compare::{Comparison, Figures, RunFigures};
+use trainer::cross_validation::{self, CrossValidation};
 use trainer::metrics::{allan, full_temperature, zero_bias};
 use trainer::sensitivity;
 
@@ -13,6 +14,25 @@ pub fn comparison(comparison: &Comparison) -> String {
     text += &runs(comparison).to_string();
     text += &figures(&comparison.figures);
     text
+}
+
+/// A cross-validation: level by level, temperature by temperature.
+pub fn cross_validation(validation: &CrossValidation) -> String {
+    let mut text = String::new();
+    let parts = [
+        ("Left-out level g", validation.levels_ug, &validation.by_level),
+        ("Left-out temperature °C", validation.temperatures_ug, &validation.by_temperature),
+    ];
+    for (title, pooled_ug, left_out) in parts {
+        let Some(pooled_ug) = pooled_ug else { continue };
+        let mut table = Table::new([title, "samples", "residual µg"]);
+        for one in left_out {
+            table.row([format!("{:+.2}", one.at), one.samples.to_string(), format!("{:.2}", one.residual_ug)]);
+        }
+        table.row(["all".to_owned(), String::new(), format!("{pooled_ug:.2}")]);
+        let _ = writeln!(text, "{table}");
+    }
+    text + "  " + cross_validation::DEFINITION
 }
 
 fn headline(comparison: &Comparison) -> String {

@@ -1,6 +1,6 @@
 //! The microcontroller's image in QEMU, and the line to it.
 
-use crate::workspace::root;
+use crate::workspace::{root, text};
 use firmware_sim::link::Transport;
 use std::fs;
 use std::io::{ErrorKind, Read, Write};
@@ -10,10 +10,6 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// Where `memory.x` puts the record of the serial number.
-const IDENTITY: u32 = 0x080C_0000;
-/// Where `memory.x` puts the calibration.
-const CALIBRATION: u32 = 0x080E_0000;
 /// How long QEMU may take to start on a busy machine, in looks of [`LOOK`].
 const LOOKS: usize = 600;
 const LOOK: Duration = Duration::from_millis(50);
@@ -44,9 +40,9 @@ impl Microcontroller {
             .args(["-chardev", &format!("socket,id=line,host=127.0.0.1,port={port},nodelay=on")])
             .arg("-kernel")
             .arg(image());
-        for (name, bytes, address) in [("identity", identity, IDENTITY), ("calibration", calibration, CALIBRATION)] {
+        for (region, bytes) in [("IDENTITY", identity), ("CALIBRATION", calibration)] {
             if !bytes.is_empty() {
-                command.args(["-device", &loader(&folder.path().join(name), bytes, address)]);
+                command.args(["-device", &loader(&folder.path().join(region), bytes, &origin(region))]);
             }
         }
         let mut emulator = command.stdin(Stdio::null()).spawn().unwrap_or_else(|error| {
@@ -68,10 +64,18 @@ fn image() -> PathBuf {
     image
 }
 
+/// Where `memory.x` puts a region of the flash.
+fn origin(region: &str) -> String {
+    let memory = text("memory.x");
+    let line = memory.lines().find(|line| line.trim_start().starts_with(region));
+    let origin = line.and_then(|line| line.split(['=', ',']).nth(1));
+    origin.unwrap_or_else(|| panic!("memory.x names no region {region}")).trim().to_owned()
+}
+
 /// QEMU's option that puts bytes into flash.
-fn loader(file: &Path, bytes: &[u8], address: u32) -> String {
+fn loader(file: &Path, bytes: &[u8], address: &str) -> String {
     fs::write(file, bytes).expect("the temporary folder is writable");
-    format!("loader,file={},addr={address:#x},force-raw=on", file.display())
+    format!("loader,file={},addr={address},force-raw=on", file.display())
 }
 
 fn accept(listener: &TcpListener, emulator: &mut Child) -> TcpStream {

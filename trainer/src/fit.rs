@@ -1,6 +1,7 @@
 //! Numerics: solvers know residuals and derivatives, no physics; problems know no solver.
 
 pub mod dataset;
+pub mod effects;
 pub mod firefly;
 pub mod gradient_descent;
 pub mod levenberg_marquardt;

@@ -7,14 +7,15 @@ pub use backprop::{Backprop, Swarm};
 
 use crate::campaign::{Campaign, Run, Split};
 use crate::fit::dataset::{Datum, InputScale, merged};
+use crate::fit::effects::{Chosen, Coefficients};
 use crate::fit::firefly::FireflyError;
 use crate::fit::gradient_descent::DescentError;
 use crate::fit::polynomial::Polynomial;
-use crate::model::{Model, ModelDomain, ModelNetwork, ModelScaling, Provenance, Units};
+use crate::model::{Model, ModelDomain, ModelEffect, ModelNetwork, ModelScaling, Provenance, Units};
 use crate::noise::{Components, Mean, sample_sigma_g};
 use crate::progress::Progress;
 use crate::residuals::{Residuals, residuals};
-use firmware_core::Network;
+use firmware_core::effect;
 use protocol::Weights;
 use thiserror::Error;
 
@@ -53,13 +54,56 @@ pub struct TrainSettings {
     pub scale_factor_hz_per_g: Option<f64>,
     /// Serial number of the sensor; empty fits any.
     pub serial: String,
+    /// Physical effects beside the network; second-order method only.
+    pub effects: Vec<EffectChoice>,
+}
+
+/// A physical effect to fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectChoice {
+    /// Its name.
+    pub name: String,
+    /// The campaign's channel that it follows, where not the effect's usual one.
+    pub channel: Option<String>,
+    /// Coefficients to start from, in the effect's order; `None` searches.
+    pub start: Option<Vec<f64>>,
+}
+
+impl EffectChoice {
+    /// The effect of this name, searched from scratch.
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        Self { name: name.to_owned(), channel: None, start: None }
+    }
+
+    /// The effects of a model, to be fitted anew from where they are.
+    #[must_use]
+    pub fn of(model: &Model) -> Vec<Self> {
+        let start = |effect: &ModelEffect| {
+            let about = effect::about(&effect.name)?;
+            about.parameters.iter().map(|parameter| effect.parameters.get(parameter.name).copied()).collect()
+        };
+        let choice = |effect: &ModelEffect| Self {
+            name: effect.name.clone(),
+            channel: effect.channel.clone(),
+            start: start(effect),
+        };
+        model.effects.iter().map(choice).collect()
+    }
 }
 
 impl TrainSettings {
     /// The default method with 30 restarts, as many as the paper makes.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
-        Self { method: Method::SecondOrder, restarts: 30, seed, scale_factor_hz_per_g: None, serial: String::new() }
+        Self {
+            method: Method::SecondOrder,
+            restarts: 30,
+            seed,
+            scale_factor_hz_per_g: None,
+            serial: String::new(),
+            effects: Vec::new(),
+        }
     }
 }
 
@@ -127,6 +171,20 @@ pub enum TrainError {
     /// Stopped before the first restart ended.
     #[error("cancelled before the first restart ended")]
     Cancelled,
+    /// No effect has this name.
+    #[error("there is no effect named `{0}`; `tempco effects` lists them")]
+    UnknownEffect(String),
+    /// The campaign lacks the effect's channel.
+    #[error("effect `{effect}` follows the channel `{channel}`, which the campaign doesn't have")]
+    NoChannel {
+        /// The effect.
+        effect: String,
+        /// Its channel.
+        channel: String,
+    },
+    /// The paper's methods train a network alone.
+    #[error("effects can be fitted with the second-order method only")]
+    EffectsNeedSecondOrder,
     /// A setting of the firefly swarm makes no sense.
     #[error("firefly swarm: {0}")]
     Swarm(#[from] FireflyError),
@@ -140,6 +198,9 @@ pub enum TrainError {
 
 /// What every method starts from.
 struct Task<'a> {
+    runs: Vec<&'a Run>,
+    effects: Vec<Chosen>,
+    max_gap_us: u32,
     data: Vec<Datum>,
     scale: InputScale,
     polynomial: Polynomial,
@@ -156,21 +217,7 @@ struct Candidate {
     line_g: [f64; 4],
     output_g: f64,
     weights: Weights,
-}
-
-impl Candidate {
-    /// Its reading at the scaled inputs, g.
-    fn evaluate_g(&self, x: f64, t: f64) -> f64 {
-        let [constant, by_x, by_t, by_xt] = self.line_g;
-        let network = Network::<f64>::new(&self.weights).evaluate(x, t);
-        constant + by_x * x + by_t * t + by_xt * x * t + self.output_g * network
-    }
-
-    /// Its hidden weights: x, t, threshold of each unit.
-    fn hidden(&self) -> Vec<f64> {
-        let units = self.weights.input.iter().zip(&self.weights.bias);
-        units.flat_map(|([x, t], bias)| [*x, *t, *bias].map(f64::from)).collect()
-    }
+    coefficients: Coefficients,
 }
 
 /// What a method found.
@@ -200,6 +247,9 @@ pub fn train(
     progress: &dyn Progress,
 ) -> Result<Trained, TrainError> {
     let task = Task::new(campaign, split, settings, progress)?;
+    if !settings.effects.is_empty() && settings.method != Method::SecondOrder {
+        return Err(TrainError::EffectsNeedSecondOrder);
+    }
     let Search { restarts, best } = match &settings.method {
         Method::SecondOrder => second_order::search(&task),
         Method::Backprop(backprop) => backprop::search(&task, backprop)?,
@@ -219,7 +269,7 @@ pub fn train(
 
 impl<'a> Task<'a> {
     fn new(
-        campaign: &Campaign,
+        campaign: &'a Campaign,
         split: &Split,
         settings: &'a TrainSettings,
         progress: &'a dyn Progress,
@@ -236,7 +286,18 @@ impl<'a> Task<'a> {
         let residuals: Vec<_> = runs.iter().map(|(_, run)| (*run, baseline.residuals_g(run))).collect();
         let sigma_g = sample_sigma_g(residuals.iter().map(|(run, residuals)| (*run, residuals)));
         let Baseline { polynomial, scale } = baseline;
-        Ok(Self { data, scale, polynomial, sigma_g: sigma_g.unwrap_or(0.0).max(LEAST_SIGMA_G), settings, progress })
+        let runs: Vec<&Run> = runs.into_iter().map(|(_, run)| run).collect();
+        Ok(Self {
+            effects: settings.effects.iter().map(|choice| choose(choice, campaign, &runs)).collect::<Result<_, _>>()?,
+            max_gap_us: max_gap_us(&runs),
+            runs,
+            data,
+            scale,
+            polynomial,
+            sigma_g: sigma_g.unwrap_or(0.0).max(LEAST_SIGMA_G),
+            settings,
+            progress,
+        })
     }
 
     /// Sources of scatter in the residuals of a fit of the training data.
@@ -267,11 +328,23 @@ impl<'a> Task<'a> {
                 line_g: best.line_g.map(|value| value as f32),
                 output_g: best.output_g as f32,
             },
-            domain: self.domain(campaign, split),
+            domain: self.domain(),
             network: ModelNetwork { input, bias, output, output_bias },
-            channels: Vec::new(),
-            effects: Vec::new(),
+            channels: self.channels(campaign),
+            effects: self.effects.iter().zip(&best.coefficients.values).map(|(e, v)| fitted(e, v, campaign)).collect(),
         }
+    }
+
+    /// The auxiliary channels that the effects follow, each once.
+    fn channels(&self, campaign: &Campaign) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        let used = self.effects.iter().filter(|effect| effect.about.channel.is_some());
+        for name in used.filter_map(|effect| campaign.channels.get(effect.channel)) {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        names
     }
 
     fn provenance(&self, campaign: &Campaign, split: &Split) -> Provenance {
@@ -291,17 +364,50 @@ impl<'a> Task<'a> {
     }
 
     /// The training data's rectangle and a little more, so that noise at its edge raises no flag.
-    fn domain(&self, campaign: &Campaign, split: &Split) -> ModelDomain {
+    fn domain(&self) -> ModelDomain {
         let half_f_uhz = (self.scale.delta_f_half_span_hz * 1e6 * (1.0 + DOMAIN_MARGIN)).ceil() as i64;
         let half_t_uc = (self.scale.temperature_half_span_c * 1e6 * (1.0 + DOMAIN_MARGIN)).ceil() as i32;
         let (f, t) = (self.scale.delta_f_zero_uhz, self.scale.temperature_zero_uc);
-        let intervals = split.training.iter().filter_map(|&index| campaign.runs.get(index)?.sample_interval_s());
-        let slowest_s = intervals.fold(1.0, f64::max);
         ModelDomain {
             delta_f_uhz: [f - half_f_uhz, f + half_f_uhz],
             temperature_uc: [t.saturating_sub(half_t_uc), t.saturating_add(half_t_uc)],
-            max_gap_us: (slowest_s * GAP_INTERVALS * 1e6).min(f64::from(u32::MAX)) as u32,
+            max_gap_us: self.max_gap_us,
         }
+    }
+}
+
+/// Longer than any regular sampling of these runs, µs.
+fn max_gap_us(runs: &[&Run]) -> u32 {
+    let slowest_s = runs.iter().filter_map(|run| run.sample_interval_s()).fold(1.0, f64::max);
+    (slowest_s * GAP_INTERVALS * 1e6).min(f64::from(u32::MAX)) as u32
+}
+
+/// Finds the effect and its channel.
+fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) -> Result<Chosen, TrainError> {
+    let about = effect::about(&choice.name).ok_or_else(|| TrainError::UnknownEffect(choice.name.clone()))?;
+    let Some(usual) = about.channel else { return Ok(Chosen { about, channel: 0, origin: 0.0 }) };
+    let name = choice.channel.as_deref().unwrap_or(usual);
+    let channel = campaign
+        .channels
+        .iter()
+        .position(|channel| channel == name)
+        .ok_or_else(|| TrainError::NoChannel { effect: choice.name.clone(), channel: name.to_owned() })?;
+    let values: Vec<f64> = runs
+        .iter()
+        .flat_map(|run| &run.rows)
+        .filter_map(|row| row.sample.channels.get(channel))
+        .map(|micro| *micro as f64 * 1e-6)
+        .collect();
+    Ok(Chosen { about, channel, origin: crate::metrics::mean(&values) })
+}
+
+/// A fitted effect as the model file keeps it.
+fn fitted(effect: &Chosen, values: &[f64], campaign: &Campaign) -> ModelEffect {
+    let names = effect.about.parameters.iter().map(|parameter| parameter.name.to_owned());
+    ModelEffect {
+        name: effect.about.name.to_owned(),
+        channel: effect.about.channel.and_then(|_| campaign.channels.get(effect.channel).cloned()),
+        parameters: names.zip(values.iter().copied()).collect(),
     }
 }
 

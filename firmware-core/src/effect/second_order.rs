@@ -3,7 +3,7 @@
 //! What is left of their even nonlinearities after subtraction grows with the square of the
 //! acceleration: the coefficient K2 of IEEE 1293.
 
-use super::{About, Coefficients, Effect, Moment, Parameter};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -13,7 +13,14 @@ pub const ABOUT: About = About {
     summary: "The resonators' force sensitivities differ, which leaves a term in the square of the acceleration.",
     equation: "ΔB = K2·a²",
     source: "IEEE Std 1293, K2; Qiu et al. on fork mismatch",
-    parameters: &[Parameter { name: "k2_g_per_g2", unit: "g/g²", start: 0.0, low: -0.01, high: 0.01 }],
+    parameters: &[Parameter {
+        name: "k2_g_per_g2",
+        unit: "g/g²",
+        role: Role::Amplitude,
+        start: 0.0,
+        low: -0.01,
+        high: 0.01,
+    }],
     channel: None,
     needs: "five or more levels of acceleration, as in a tumble",
 };

@@ -4,7 +4,7 @@
 //! times worse than one millikelvin on both. The difference follows the temperature's rate, so the
 //! bias does too, alike at every temperature; the mean frequency does not notice.
 
-use super::{About, Coefficients, Effect, Moment, Parameter};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role};
 use crate::memory::Memory;
 use crate::real::Real;
 
@@ -16,8 +16,15 @@ pub const ABOUT: About = About {
     equation: "ΔB = K·dT/dt, the rate smoothed over τ",
     source: "Kim & Jung, Sensors 2025, 25, 6131",
     parameters: &[
-        Parameter { name: "bias_g_per_c_per_s", unit: "g/(°C/s)", start: 0.0, low: -0.1, high: 0.1 },
-        Parameter { name: "tau_s", unit: "s", start: 5.0, low: 0.5, high: 3600.0 },
+        Parameter {
+            name: "bias_g_per_c_per_s",
+            unit: "g/(°C/s)",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.1,
+            high: 0.1,
+        },
+        Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 5.0, low: 0.5, high: 3600.0 },
     ],
     channel: None,
     needs: "temperature ramps at two rates, where the bias has different slopes over temperature",

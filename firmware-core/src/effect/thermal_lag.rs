@@ -4,7 +4,7 @@
 //! wrong temperature. The residual opens into a loop whose width grows with the ramp rate and with
 //! the local slope of the bias over temperature; it closes when the rate is zero.
 
-use super::{About, Coefficients, Disturbance, Effect, Moment, Parameter};
+use super::{About, Coefficients, Disturbance, Effect, Moment, Parameter, Role};
 use crate::memory::Memory;
 use crate::real::Real;
 
@@ -15,7 +15,7 @@ pub const ABOUT: About = About {
     summary: "The resonators follow the thermometer late, so during a temperature change the map is entered with the wrong temperature.",
     equation: "τ·dTr/dt = T − Tr; the map is evaluated at Tr",
     source: "Guo et al., Micromachines 2023, 14, 161",
-    parameters: &[Parameter { name: "tau_s", unit: "s", start: 35.0, low: 0.5, high: 3600.0 }],
+    parameters: &[Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 35.0, low: 0.5, high: 3600.0 }],
     channel: None,
     needs: "temperature ramps, best at two rates and in both directions",
 };

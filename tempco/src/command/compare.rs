@@ -5,8 +5,11 @@ use crate::failure::{Answer, Failure};
 use crate::render;
 use clap::Args;
 use std::path::PathBuf;
+use trainer::campaign::{Campaign, HoldOut};
 use trainer::compare::compare;
+use trainer::cross_validation::{CrossValidation, cross_validate};
 use trainer::model::Model;
+use trainer::train::{EffectChoice, TrainSettings};
 
 /// Compares a model with measurements, run by run, in the device's own arithmetic.
 #[derive(Args)]
@@ -22,6 +25,10 @@ pub struct Compare {
     #[arg(long, value_name = "UG")]
     fail_above: Option<f64>,
 
+    /// Trains again without each inner level and temperature, and says how well the model holds there
+    #[arg(long)]
+    cross_validate: bool,
+
     /// Prints one JSON object instead of text
     #[arg(long)]
     json: bool,
@@ -30,13 +37,32 @@ pub struct Compare {
 impl Compare {
     pub fn run(&self) -> Result<Answer, Failure> {
         let model = Model::read(&self.model)?;
-        let comparison = compare(&model, &self.data.read()?)?;
+        let campaign = self.data.read()?;
+        let comparison = compare(&model, &campaign)?;
+        let validation = if self.cross_validate { Some(validate(&model, &campaign)?) } else { None };
         if self.json {
-            anstream::println!("{:#}", serde_json::json!(comparison));
+            let mut value = serde_json::json!(comparison);
+            value["cross_validation"] = serde_json::json!(validation);
+            anstream::println!("{value:#}");
         } else {
             anstream::println!("{}", render::comparison(&comparison));
+            if let Some(validation) = &validation {
+                anstream::println!("{}", render::cross_validation(validation));
+            }
         }
         let exceeded = self.fail_above.is_some_and(|limit_ug| comparison.residual_ug > limit_ug);
         Ok(if exceeded { Answer::No } else { Answer::Yes })
     }
+}
+
+/// Fewer restarts than a training: dozens of trainings are made, and the median restart is as good for this.
+const RESTARTS: usize = 4;
+
+fn validate(model: &Model, campaign: &Campaign) -> Result<CrossValidation, Failure> {
+    let settings = TrainSettings {
+        restarts: RESTARTS,
+        effects: EffectChoice::of(model),
+        ..TrainSettings::new(model.provenance.seed)
+    };
+    Ok(cross_validate(campaign, &campaign.split(&HoldOut::LastOfEachKind)?, &settings)?)
 }

@@ -2,6 +2,7 @@
 
 use crate::campaign::{Row, Run};
 use protocol::Sample;
+use std::ops::Range;
 
 /// Zeros and half spans of the inputs over the training runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,8 +69,10 @@ pub struct Datum {
 /// The mean of a function over a cell differs from the function at the cell's mean by curvature ·
 /// width²/24: with a departure from the line of 10 mg that is below 0.01 µg.
 const CELL: f64 = 0.01;
-/// And while at most this many samples are merged, so that slow drifts keep their shape.
-const MOST_MERGED: f64 = 128.0;
+/// And while at most this many samples are merged,
+const MOST_MERGED: usize = 128;
+/// and this many minutes, so that slow drifts keep their shape.
+const MOST_MINUTES: f64 = 10.0;
 
 /// Scaled data of one run, consecutive neighbours at the same reference merged into their mean.
 ///
@@ -77,52 +80,51 @@ const MOST_MERGED: f64 = 128.0;
 /// soaked state at 1 Hz repeats thirty times is computed once.
 #[must_use]
 pub fn merged(run: &Run, index: usize, scale: &InputScale) -> Vec<Datum> {
-    let mut data = Vec::new();
-    let mut cell: Option<Cell> = None;
-    for datum in single(run, index, scale) {
-        match &mut cell {
-            Some(open) if open.takes(&datum) => open.add(&datum),
-            _ => data.extend(cell.replace(Cell::of(datum)).map(|full| full.mean())),
-        }
+    cells(run, scale).into_iter().map(|cell| mean(&run.rows[cell], index, scale)).collect()
+}
+
+/// The stretches of a run that [`merged`] takes the means of.
+#[must_use]
+pub fn cells(run: &Run, scale: &InputScale) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    while let Some(first) = run.rows.get(start) {
+        let joins = |row: &Row| is_neighbour(first, row, scale);
+        let length = run.rows[start..].iter().take(MOST_MERGED).take_while(|row| joins(row)).count();
+        found.push(start..start + length);
+        start += length;
     }
-    data.extend(cell.map(|last| last.mean()));
-    data
+    found
+}
+
+fn is_neighbour(first: &Row, row: &Row, scale: &InputScale) -> bool {
+    let ([x0, t0], [x, t]) = (scale.inputs(&first.sample), scale.inputs(&row.sample));
+    let minutes = row.sample.time_us.abs_diff(first.sample.time_us) as f64 / 60e6;
+    (x - x0).abs() < CELL
+        && (t - t0).abs() < CELL
+        && (row.reference_g - first.reference_g).abs() < CELL
+        && row.sample.channels.iter().zip(&first.sample.channels).all(|(a, b)| is_near(*a, *b))
+        && minutes < MOST_MINUTES
+}
+
+/// Auxiliary channels within half a per cent.
+fn is_near(a: i64, b: i64) -> bool {
+    a.abs_diff(b) <= b.unsigned_abs() / 200
+}
+
+pub(super) fn mean(rows: &[Row], run: usize, scale: &InputScale) -> Datum {
+    let count = rows.len() as f64;
+    let mut sum = Datum { x: 0.0, t: 0.0, reference_g: 0.0, weight: count, run };
+    for row in rows {
+        let [x, t] = scale.inputs(&row.sample);
+        sum.x += x / count;
+        sum.t += t / count;
+        sum.reference_g += row.reference_g / count;
+    }
+    sum
 }
 
 /// All rows of a run as data of weight one.
 pub fn single(run: &Run, index: usize, scale: &InputScale) -> impl Iterator<Item = Datum> {
-    run.rows.iter().map(move |Row { sample, reference_g, .. }| {
-        let [x, t] = scale.inputs(sample);
-        Datum { x, t, reference_g: *reference_g, weight: 1.0, run: index }
-    })
-}
-
-struct Cell {
-    first: Datum,
-    sum: Datum,
-}
-
-impl Cell {
-    const fn of(datum: Datum) -> Self {
-        Self { first: datum, sum: datum }
-    }
-
-    fn takes(&self, datum: &Datum) -> bool {
-        (datum.x - self.first.x).abs() < CELL
-            && (datum.t - self.first.t).abs() < CELL
-            && (datum.reference_g - self.first.reference_g).abs() < CELL
-            && self.sum.weight < MOST_MERGED
-    }
-
-    fn add(&mut self, datum: &Datum) {
-        self.sum.x += datum.x;
-        self.sum.t += datum.t;
-        self.sum.reference_g += datum.reference_g;
-        self.sum.weight += datum.weight;
-    }
-
-    fn mean(&self) -> Datum {
-        let n = self.sum.weight;
-        Datum { x: self.sum.x / n, t: self.sum.t / n, reference_g: self.sum.reference_g / n, ..self.sum }
-    }
+    run.rows.iter().map(move |row| mean(std::slice::from_ref(row), index, scale))
 }

@@ -16,12 +16,15 @@
 //! what it is, a random effect: subtracting one rank-one term a run from the Gram matrix makes the
 //! fit a generalised least-squares fit at no cost.
 //!
+//! Effects move inputs and targets of the rows with parameters of their own ([`Rows`]); their tangents
+//! join D, with weight one instead of an output weight.
+//!
 //! Rows of a second kind ask for the slope ∂y/∂x instead of the value; they keep an accelerometer
 //! from becoming a classifier of the levels that it was trained on.
 
 use super::levenberg_marquardt::{Problem, Quadratic};
 use firmware_core::activation::{curvature, sigmoid, slope};
-use nalgebra::{Cholesky, Const, SMatrix, SVector};
+use nalgebra::{Cholesky, Const, Dyn, OMatrix, SMatrix, SVector};
 use protocol::limits::HIDDEN;
 
 /// Hidden weights: input x, input t, threshold of each unit in turn.
@@ -33,7 +36,10 @@ const TARGET: usize = LINEAR;
 /// Columns that the cost alone needs.
 const COST_COLUMNS: usize = LINEAR + 1;
 const DERIVATIVES: usize = COST_COLUMNS;
-const COLUMNS: usize = DERIVATIVES + NONLINEAR;
+const EXTRA: usize = DERIVATIVES + NONLINEAR;
+const COLUMNS: usize = EXTRA + MOST_EXTRA;
+/// Most parameters that effects may have together.
+pub const MOST_EXTRA: usize = 16;
 
 /// Asks for a value of the output.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +52,8 @@ pub struct ValueRow {
     pub y: f64,
     /// Weight of its squared residual.
     pub weight: f64,
+    /// Samples that it stands for.
+    pub samples: f64,
 }
 
 /// The rows of one run, whose residuals share an offset.
@@ -55,6 +63,49 @@ pub struct Group {
     pub rows: Vec<ValueRow>,
     /// Variance of the shared offset in units of the variance of a row of weight one.
     pub offset_variance: f64,
+}
+
+/// Rows that may move with parameters of their own.
+pub trait Rows {
+    /// How many parameters.
+    fn parameters(&self) -> usize;
+
+    /// Moves the rows, and brings their tangents along if asked to.
+    fn update(&mut self, parameters: &[f64], tangents: bool);
+
+    /// The rows by run.
+    fn groups(&self) -> &[Group];
+
+    /// [`Tangent`]s of every row by every parameter: rows in order, parameters within.
+    fn tangents(&self) -> &[Tangent];
+}
+
+/// By how much a row moves with a parameter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tangent {
+    /// Of its scaled frequency difference.
+    pub x: f64,
+    /// Of its scaled temperature.
+    pub t: f64,
+    /// Of its wanted output.
+    pub y: f64,
+}
+
+/// Rows that stay where they are.
+impl Rows for Vec<Group> {
+    fn parameters(&self) -> usize {
+        0
+    }
+
+    fn update(&mut self, _: &[f64], _: bool) {}
+
+    fn groups(&self) -> &[Group] {
+        self
+    }
+
+    fn tangents(&self) -> &[Tangent] {
+        &[]
+    }
 }
 
 /// Asks for a slope of the output.
@@ -105,8 +156,10 @@ impl Fit {
 }
 
 /// The separable problem: rows, slopes and priors.
-pub struct NetworkProblem<'a> {
-    groups: &'a [Group],
+///
+/// Its parameters are the hidden weights, then the rows' own.
+pub struct NetworkProblem<'a, R> {
+    rows: R,
     slopes: &'a [SlopeRow],
     prior: Prior,
     gram: Box<Gram>,
@@ -119,16 +172,23 @@ type LinearVector = SVector<f64, LINEAR>;
 /// Relative ridge that keeps the linear solve positive definite when units coincide.
 const JITTER: f64 = 1e-13;
 
-impl<'a> NetworkProblem<'a> {
+impl<'a, R: Rows> NetworkProblem<'a, R> {
     /// The problem of these rows.
     #[must_use]
-    pub fn new(groups: &'a [Group], slopes: &'a [SlopeRow], prior: Prior) -> Self {
-        Self { groups, slopes, prior, gram: Box::new([[0.0; COLUMNS]; COLUMNS]) }
+    pub fn new(rows: R, slopes: &'a [SlopeRow], prior: Prior) -> Self {
+        Self { rows, slopes, prior, gram: Box::new([[0.0; COLUMNS]; COLUMNS]) }
     }
 
-    /// The whole network at these hidden weights.
-    pub fn fit(&mut self, hidden: &[f64]) -> Option<Fit> {
-        self.fill(hidden, COST_COLUMNS);
+    /// The rows, where they were moved to last.
+    pub const fn rows(&self) -> &R {
+        &self.rows
+    }
+
+    /// The whole network at these parameters.
+    pub fn fit(&mut self, point: &[f64]) -> Option<Fit> {
+        let (hidden, extra) = point.split_at_checked(NONLINEAR)?;
+        self.rows.update(extra, false);
+        self.fill(hidden, None);
         let (_, linear, _) = self.solve_linear()?;
         let mut fit = Fit { hidden: hidden.to_vec(), line: [0.0; LINE], output: [0.0; HIDDEN] };
         let (line, output) = linear.as_slice().split_at(LINE);
@@ -137,16 +197,20 @@ impl<'a> NetworkProblem<'a> {
         Some(fit)
     }
 
-    /// Fills the first `used` columns of the Gram matrix.
-    fn fill(&mut self, hidden: &[f64], used: usize) {
-        for row in self.gram.iter_mut() {
-            row.fill(0.0);
-        }
+    /// Fills the Gram matrix: what the cost needs, or with known linear weights all of it.
+    fn fill(&mut self, hidden: &[f64], linear: Option<&LinearVector>) {
+        let extra = self.rows.parameters();
+        let used = if linear.is_some() { EXTRA + extra } else { COST_COLUMNS };
+        self.gram.iter_mut().for_each(|row| row.fill(0.0));
         let mut columns = [0.0; COLUMNS];
-        for group in self.groups {
+        let mut tangents = self.rows.tangents().chunks_exact(extra.max(1));
+        for group in self.rows.groups() {
             let (mut sum, mut weight) = ([0.0; COLUMNS], 0.0);
             for row in &group.rows {
                 value_columns(row, hidden, &mut columns);
+                if let (Some(linear), true) = (linear, extra > 0) {
+                    extra_columns(row, hidden, linear, tangents.next().unwrap_or_default(), &mut columns);
+                }
                 accumulate(&mut self.gram, &columns[..used], row.weight);
                 weight += row.weight;
                 sum.iter_mut().zip(&columns).for_each(|(sum, column)| *sum += row.weight * column);
@@ -154,6 +218,7 @@ impl<'a> NetworkProblem<'a> {
             // (W⁻¹ + v·11ᵀ)⁻¹ = W − v/(1 + v·ΣW)·W11ᵀW
             accumulate(&mut self.gram, &sum[..used], -group.offset_variance / (1.0 + group.offset_variance * weight));
         }
+        columns[EXTRA..].fill(0.0);
         for row in self.slopes {
             slope_columns(row, hidden, &mut columns);
             accumulate(&mut self.gram, &columns[..used], row.weight);
@@ -186,37 +251,66 @@ impl<'a> NetworkProblem<'a> {
     }
 }
 
-impl Problem for NetworkProblem<'_> {
+impl<R: Rows> Problem for NetworkProblem<'_, R> {
     fn parameters(&self) -> usize {
-        NONLINEAR
+        NONLINEAR + self.rows.parameters()
     }
 
-    fn cost(&mut self, hidden: &[f64]) -> f64 {
-        self.fill(hidden, COST_COLUMNS);
+    fn cost(&mut self, point: &[f64]) -> f64 {
+        let (hidden, extra) = point.split_at(NONLINEAR);
+        self.rows.update(extra, false);
+        self.fill(hidden, None);
         self.solve_linear().map_or(f64::INFINITY, |(_, _, squares)| 0.5 * squares + self.hidden_cost(hidden))
     }
 
-    fn linearise(&mut self, hidden: &[f64], quadratic: &mut Quadratic) {
-        self.fill(hidden, COLUMNS);
+    fn linearise(&mut self, point: &[f64], quadratic: &mut Quadratic) {
+        let (hidden, extra) = point.split_at(NONLINEAR);
+        self.rows.update(extra, true);
+        self.fill(hidden, None);
         let Some((factor, linear, squares)) = self.solve_linear() else {
             quadratic.cost = f64::INFINITY;
             return;
         };
+        self.fill(hidden, Some(&linear));
         quadratic.cost = 0.5 * squares + self.hidden_cost(hidden);
-        let cross = SMatrix::<f64, LINEAR, NONLINEAR>::from_fn(|i, j| self.gram[i][DERIVATIVES + j]);
+        let parameters = NONLINEAR + extra.len();
+        let cross = OMatrix::<f64, Const<LINEAR>, Dyn>::from_fn(parameters, |i, j| self.gram[i][DERIVATIVES + j]);
         let absorbed = cross.transpose() * factor.solve(&cross);
-        let output = |j: usize| linear[LINE + j / 3];
-        for i in 0..NONLINEAR {
-            let (row, vi) = (DERIVATIVES + i, output(i));
+        let scale = |j: usize| if j < NONLINEAR { linear[LINE + j / 3] } else { 1.0 };
+        for i in 0..parameters {
+            let row = DERIVATIVES + i;
             let fitted: f64 = cross.column(i).dot(&linear);
-            quadratic.gradient[i] = -vi * (self.gram[TARGET][row] - fitted) + self.prior.hidden * hidden[i];
-            for j in i..NONLINEAR {
-                let value = vi * output(j) * (self.gram[row][DERIVATIVES + j] - absorbed[(i, j)]);
+            quadratic.gradient[i] = -scale(i) * (self.gram[TARGET][row] - fitted);
+            for j in i..parameters {
+                let value = scale(i) * scale(j) * (self.gram[row][DERIVATIVES + j] - absorbed[(i, j)]);
                 quadratic.hessian[(i, j)] = value;
                 quadratic.hessian[(j, i)] = value;
             }
+        }
+        for (i, weight) in hidden.iter().enumerate() {
+            quadratic.gradient[i] += self.prior.hidden * weight;
             quadratic.hessian[(i, i)] += self.prior.hidden;
         }
+    }
+}
+
+/// How the output follows each parameter of the row: the network's slopes times how the row moves,
+/// less how its target moves.
+fn extra_columns(
+    row: &ValueRow,
+    hidden: &[f64],
+    linear: &LinearVector,
+    tangents: &[Tangent],
+    columns: &mut [f64; COLUMNS],
+) {
+    let (mut by_x, mut by_t) = (linear[1] + linear[3] * row.t, linear[2] + linear[3] * row.x);
+    for (unit, [wx, wt, _]) in hidden.as_chunks::<3>().0.iter().enumerate() {
+        let rise = linear[LINE + unit] * columns[DERIVATIVES + 3 * unit + 2];
+        by_x += rise * wx;
+        by_t += rise * wt;
+    }
+    for (column, tangent) in columns[EXTRA..].iter_mut().zip(tangents) {
+        *column = by_x * tangent.x + by_t * tangent.t - tangent.y;
     }
 }
 

@@ -7,6 +7,7 @@
 
 use super::{Candidate, Restart, Search, Task, TrainError};
 use crate::fit::dataset::Datum;
+use crate::fit::effects::Coefficients;
 use crate::fit::firefly::{self, Domain, ImprovedSettings, StandardSettings};
 use crate::fit::gradient_descent::{self, Termination};
 use crate::fit::random::stream;
@@ -165,6 +166,7 @@ impl<'a> Problem<'a> {
             line_g: [self.middle_g, 0.0, 0.0, 0.0],
             output_g: self.unit_g,
             weights: Weights::from_array(&row),
+            coefficients: Coefficients { values: Vec::new() },
         }
     }
 }

@@ -2,12 +2,14 @@
 
 use super::{Candidate, Restart, Search, Task};
 use crate::fit::dataset::Datum;
+use crate::fit::effects::{Coefficients, Frame, MovedRows};
 use crate::fit::levenberg_marquardt::{Limits, Termination, minimise};
-use crate::fit::network::{Fit, Group, NetworkProblem, Prior, SlopeRow, ValueRow};
+use crate::fit::network::{Fit, Group, NONLINEAR, NetworkProblem, Prior, Rows, SlopeRow};
 use crate::fit::polynomial::Polynomial;
 use crate::fit::random::{between, stream};
-use crate::noise::Components;
+use crate::noise::{Components, Mean};
 use crate::progress::RestartNews;
+use firmware_core::effect::Role;
 use protocol::Weights;
 use protocol::limits::HIDDEN;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -27,31 +29,91 @@ const SLOPE_GRID: i32 = 7;
 const STEEPEST_START: f64 = 2.5;
 const LIMITS: Limits = Limits { iterations: 200, decrease: 1e-5, step: 1e-9 };
 
+/// Where along a shape's range, on a logarithmic scale, joint fits start.
+const SHAPE_STARTS: [f64; 6] = [0.1, 0.25, 0.4, 0.55, 0.7, 0.85];
+/// Amplitudes start as far from zero as gives shapes a slope to follow.
+const FIRST_AMPLITUDE: f64 = 1e-6;
+
 /// Trains from every start.
 ///
 /// The polynomial tells a first time how much states and runs scatter, and so how far each may be
-/// believed; the best network tells it better, and is trained on with that.
+/// believed; the best network tells it better, and is trained on with that. Effects join the best
+/// network from several shapes and are fitted together with it.
 pub(super) fn search(task: &Task) -> Search {
     let first = Problem::new(task, &task.noise(|datum| task.polynomial.evaluate(datum.x, datum.t)));
+    let still = first.still_rows(task);
     let attempt = |index: usize| {
-        if task.progress.cancelled() {
-            return None;
-        }
-        descend(task, &first, index, &random_start(&mut stream(task.settings.seed, index as u64)))
+        let start = random_start(&mut stream(task.settings.seed, index as u64));
+        descend(task, &first, still.clone(), index, &start)
     };
-    let candidates = (0..task.settings.restarts).into_par_iter().filter_map(attempt).collect();
-    let Search { restarts, best } = Search::of(candidates);
+    let trials: Vec<Trial> = (0..task.settings.restarts).into_par_iter().filter_map(attempt).collect();
+    let restarts = trials.iter().map(|trial| trial.restart).collect();
+    let best = least(trials).and_then(|trial| with_effects(task, &first, trial));
     let refined = best.as_ref().and_then(|best| {
-        let known = Problem::new(task, &task.noise(|datum| best.evaluate_g(datum.x, datum.t)));
-        descend(task, &known, task.settings.restarts, &best.hidden())
+        let known = Problem::new(task, &Components::estimate(task.sigma_g, &best.scatter));
+        let trial = known.descend_moved(task, task.settings.restarts, &best.point)?;
+        Some(known.candidate(task, &trial))
     });
-    Search { restarts, best: refined.or(best) }
+    Search { restarts, best: refined.or_else(|| best.map(|best| first.candidate(task, &best))) }
 }
 
-fn descend(task: &Task, problem: &Problem, index: usize, start: &[f64]) -> Option<Candidate> {
-    let mut network = NetworkProblem::new(&problem.groups, &problem.slopes, problem.prior);
+/// The trial of least cost; the first of equals, so that the number of threads doesn't matter.
+fn least(trials: Vec<Trial>) -> Option<Trial> {
+    trials.into_iter().filter(|trial| trial.cost.is_finite()).min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
+
+/// Fits the task's effects together with the network, from several shapes.
+fn with_effects(task: &Task, problem: &Problem, best: Trial) -> Option<Trial> {
+    if task.effects.is_empty() {
+        return Some(best);
+    }
+    let hidden = best.point.get(..NONLINEAR)?;
+    let attempt = |(index, start): (usize, Vec<f64>)| {
+        let point: Vec<f64> = hidden.iter().chain(&start).copied().collect();
+        problem.descend_moved(task, task.settings.restarts + index, &point)
+    };
+    let starts: Vec<_> = effect_starts(task).into_iter().enumerate().collect();
+    least(starts.into_par_iter().filter_map(attempt).collect())
+}
+
+/// Effects known from an earlier model start where they were, the others at each of [`SHAPE_STARTS`].
+fn effect_starts(task: &Task) -> Vec<Vec<f64>> {
+    let known = |index: usize| task.settings.effects.get(index).and_then(|choice| choice.start.clone());
+    let start = |part: f64| {
+        let of = |(index, effect): (usize, &crate::fit::effects::Chosen)| {
+            known(index).unwrap_or_else(|| {
+                let first = |about: &firmware_core::effect::Parameter| match about.role {
+                    Role::Amplitude => FIRST_AMPLITUDE,
+                    Role::Shape => about.low * (about.high / about.low).powf(part),
+                    Role::Origin => effect.origin,
+                };
+                effect.about.parameters.iter().map(first).collect()
+            })
+        };
+        Coefficients { values: task.effects.iter().enumerate().map(of).collect() }.to_parameters(&task.effects)
+    };
+    let mut starts: Vec<Vec<f64>> = SHAPE_STARTS.into_iter().map(start).collect();
+    starts.dedup();
+    starts
+}
+
+/// Where one descent ended.
+struct Trial {
+    restart: Restart,
+    cost: f64,
+    point: Vec<f64>,
+    fit: Fit,
+    scatter: Vec<Mean>,
+}
+
+fn descend(task: &Task, problem: &Problem, rows: impl Rows, index: usize, start: &[f64]) -> Option<Trial> {
+    if task.progress.cancelled() {
+        return None;
+    }
+    let weight: f64 = rows.groups().iter().flat_map(|group| &group.rows).map(|row| row.weight).sum();
+    let mut network = NetworkProblem::new(rows, &problem.slopes, problem.prior);
     let report = |iteration, cost: f64, done| {
-        let residual_g = (2.0 * cost / problem.weight).sqrt() * problem.unit_g;
+        let residual_g = (2.0 * cost / weight).sqrt() * problem.unit_g;
         task.progress.restart(RestartNews { index, iteration, residual_g, done });
     };
     let minimum = minimise(&mut network, start, &LIMITS, |iteration, cost| {
@@ -60,19 +122,40 @@ fn descend(task: &Task, problem: &Problem, index: usize, start: &[f64]) -> Optio
     });
     report(minimum.iterations, minimum.cost, true);
     let fit = network.fit(&minimum.point)?;
-    let residual_g = problem.residual_g(task, &fit);
-    let converged = minimum.termination != Termination::IterationLimit;
-    let restart = Restart { residual_g, iterations: minimum.iterations, converged };
-    Some(problem.candidate(&fit, restart, minimum.cost))
+    let scatter = scatter(network.rows(), &fit, problem.unit_g);
+    let restart = Restart {
+        residual_g: rms(&scatter),
+        iterations: minimum.iterations,
+        converged: minimum.termination != Termination::IterationLimit,
+    };
+    Some(Trial { restart, cost: minimum.cost, point: minimum.point, fit, scatter })
+}
+
+/// Residuals of the rows' means.
+fn scatter(rows: &impl Rows, fit: &Fit, unit_g: f64) -> Vec<Mean> {
+    let mut means = Vec::new();
+    for (run, group) in rows.groups().iter().enumerate() {
+        means.extend(group.rows.iter().map(|row| Mean {
+            run,
+            samples: row.samples,
+            residual_g: (fit.evaluate(row.x, row.t) - row.y) * unit_g,
+        }));
+    }
+    means
+}
+
+/// RMS over the samples that the means stand for, g.
+fn rms(means: &[Mean]) -> f64 {
+    let squares: f64 = means.iter().map(|mean| mean.samples * mean.residual_g.powi(2)).sum();
+    let samples: f64 = means.iter().map(|mean| mean.samples).sum();
+    (squares / samples).sqrt()
 }
 
 /// The task in the units of its departure from a line.
 struct Problem {
-    groups: Vec<Group>,
+    noise: Components,
     slopes: Vec<SlopeRow>,
     prior: Prior,
-    /// Of all rows.
-    weight: f64,
     line: Polynomial,
     unit_g: f64,
 }
@@ -80,58 +163,60 @@ struct Problem {
 impl Problem {
     fn new(task: &Task, noise: &Components) -> Self {
         let line = Polynomial::fit_degrees(&task.data, 1, 1);
-        let departure_g = |datum: &Datum| datum.reference_g - line.evaluate(datum.x, datum.t);
-        let unit_g = rms_weighted(&task.data, departure_g).max(noise.sample_g);
-        let row = |datum: &Datum| ValueRow {
-            x: datum.x,
-            t: datum.t,
-            y: departure_g(datum) / unit_g,
-            weight: noise.weight(datum.weight),
+        let departure = |datum: &Datum| Mean {
+            run: datum.run,
+            samples: datum.weight,
+            residual_g: datum.reference_g - line.evaluate(datum.x, datum.t),
         };
-        let runs = task.data.chunk_by(|a, b| a.run == b.run);
-        let group =
-            |run: &[Datum]| Group { rows: run.iter().map(row).collect(), offset_variance: noise.run_variance() };
-        let groups: Vec<Group> = runs.map(group).collect();
+        let unit_g = rms(&task.data.iter().map(departure).collect::<Vec<_>>()).max(noise.sample_g);
         let unit_variance = (noise.sample_g / unit_g).powi(2);
         Self {
+            noise: *noise,
             slopes: slope_rows(task, &line, unit_g),
             prior: Prior { output: unit_variance / OUTPUT_SIZE.powi(2), hidden: unit_variance / HIDDEN_SIZE.powi(2) },
-            weight: groups.iter().flat_map(|group| &group.rows).map(|row| row.weight).sum(),
-            groups,
             line,
             unit_g,
         }
     }
 
-    fn evaluate_g(&self, fit: &Fit, x: f64, t: f64) -> f64 {
-        self.line.evaluate(x, t) + self.unit_g * fit.evaluate(x, t)
+    fn moved_rows<'a>(&self, task: &'a Task) -> MovedRows<'a> {
+        let frame =
+            Frame { scale: task.scale, line: self.line.clone(), unit_g: self.unit_g, max_gap_us: task.max_gap_us };
+        MovedRows::new(&task.runs, &task.effects, frame, &self.noise)
     }
 
-    /// RMS over the training samples, g.
-    fn residual_g(&self, task: &Task, fit: &Fit) -> f64 {
-        rms_weighted(&task.data, |datum| self.evaluate_g(fit, datum.x, datum.t) - datum.reference_g)
+    fn still_rows(&self, task: &Task) -> Vec<Group> {
+        self.moved_rows(task).still()
     }
 
-    fn candidate(&self, fit: &Fit, restart: Restart, cost: f64) -> Candidate {
+    fn descend_moved(&self, task: &Task, index: usize, start: &[f64]) -> Option<Trial> {
+        if task.effects.is_empty() {
+            return descend(task, self, self.still_rows(task), index, start);
+        }
+        descend(task, self, self.moved_rows(task), index, start)
+    }
+
+    fn candidate(&self, task: &Task, trial: &Trial) -> Candidate {
         let mut weights = Weights::ZERO;
-        for (unit, [wx, wt, b]) in fit.hidden.as_chunks::<3>().0.iter().enumerate().take(HIDDEN) {
+        for (unit, [wx, wt, b]) in trial.fit.hidden.as_chunks::<3>().0.iter().enumerate().take(HIDDEN) {
             weights.input[unit] = [*wx as f32, *wt as f32];
             weights.bias[unit] = *b as f32;
-            weights.output[unit] = fit.output[unit] as f32;
+            weights.output[unit] = trial.fit.output[unit] as f32;
         }
         let mut line_g = self.line.bilinear();
-        for (value, share) in line_g.iter_mut().zip(fit.line) {
+        for (value, share) in line_g.iter_mut().zip(trial.fit.line) {
             *value += share * self.unit_g;
         }
-        Candidate { restart, cost, line_g, output_g: self.unit_g, weights }
+        let parameters = trial.point.get(NONLINEAR..).unwrap_or_default();
+        Candidate {
+            restart: trial.restart,
+            cost: trial.cost,
+            line_g,
+            output_g: self.unit_g,
+            weights,
+            coefficients: Coefficients::from_parameters(&task.effects, parameters),
+        }
     }
-}
-
-/// Root mean square of a value over the samples that the data stand for.
-fn rms_weighted(data: &[Datum], value: impl Fn(&Datum) -> f64) -> f64 {
-    let squares: f64 = data.iter().map(|datum| datum.weight * value(datum).powi(2)).sum();
-    let samples: f64 = data.iter().map(|datum| datum.weight).sum();
-    (squares / samples).sqrt()
 }
 
 /// Asks on a grid that the slope be the scale factor that the campaign itself measured.

@@ -1,0 +1,47 @@
+//! `tempco remove model.toml EFFECT DATA -o simpler.toml`
+
+use super::change::{Change, ladder};
+use crate::data::Data;
+use crate::failure::{Answer, Failure};
+use clap::Args;
+use std::path::PathBuf;
+use trainer::train::EffectChoice;
+
+/// Takes a physical effect out of a model and retrains the rest.
+#[derive(Args)]
+#[command(after_help = "Example:  tempco remove model.toml thermal-lag campaign.csv -o simpler.toml")]
+pub struct Remove {
+    /// Model file
+    model: PathBuf,
+
+    /// Effect to take out
+    effect: String,
+
+    #[command(flatten)]
+    data: Data,
+
+    /// Where to write the new model
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+
+    /// Prints one JSON object instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+impl Remove {
+    pub fn run(&self) -> Result<Answer, Failure> {
+        let change = Change::read(&self.model, &self.data)?;
+        let mut effects = EffectChoice::of(&change.model);
+        let before = effects.len();
+        effects.retain(|choice| choice.name != self.effect);
+        if effects.len() == before {
+            let names: Vec<&str> = change.model.effects.iter().map(|effect| effect.name.as_str()).collect();
+            return Err(Failure::new(format_args!("the model has no effect `{}`", self.effect)).help(format_args!(
+                "it has: {}",
+                if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+            )));
+        }
+        ladder(&change, effects, &self.output, self.json)
+    }
+}

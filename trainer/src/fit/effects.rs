@@ -1,0 +1,252 @@
+//! Rows moved by physical effects, for fitting their coefficients together with the network.
+//!
+//! The effects are the device's own ([`firmware_core::Terms`]) in `f64`, run over every raw sample so that
+//! their memories see the true history; what they do is averaged over the cells that the optimiser
+//! works on. Their level is the reference: during calibration it is known.
+
+use super::dataset::{InputScale, cells};
+use super::network::{Group, Rows, Tangent, ValueRow};
+use super::polynomial::Polynomial;
+use crate::campaign::Run;
+use crate::noise::Components;
+use firmware_core::effect::{About, Role};
+use firmware_core::{Observation, Terms};
+use protocol::Scaling;
+use std::ops::Range;
+
+/// An effect chosen for a model: which one, and which of the campaign's channels it follows.
+#[derive(Clone, Copy, Debug)]
+pub struct Chosen {
+    /// The effect.
+    pub about: &'static About,
+    /// Index of its auxiliary channel.
+    pub channel: usize,
+    /// Mean of that channel over the training runs: where [`Role::Origin`] counts from.
+    pub origin: f64,
+}
+
+/// Coefficients of several effects, and the optimiser's view of them.
+#[derive(Clone, Debug)]
+pub struct Coefficients {
+    /// Effect by effect, in its own order and units.
+    pub values: Vec<Vec<f64>>,
+}
+
+impl Coefficients {
+    /// The optimiser's parameters: amplitudes as they are, shapes as logarithms, origins left out.
+    #[must_use]
+    pub fn to_parameters(&self, effects: &[Chosen]) -> Vec<f64> {
+        let mut parameters = Vec::new();
+        for (effect, values) in effects.iter().zip(&self.values) {
+            for (about, value) in effect.about.parameters.iter().zip(values) {
+                match about.role {
+                    Role::Amplitude => parameters.push(*value),
+                    Role::Shape => parameters.push(value.ln()),
+                    Role::Origin => {}
+                }
+            }
+        }
+        parameters
+    }
+
+    /// The inverse, held within what makes physical sense.
+    #[must_use]
+    pub fn from_parameters(effects: &[Chosen], parameters: &[f64]) -> Self {
+        let mut next = parameters.iter().copied();
+        let mut value = |effect: &Chosen, about: &firmware_core::effect::Parameter| {
+            let free = match about.role {
+                Role::Amplitude => next.next().unwrap_or_default(),
+                Role::Shape => next.next().unwrap_or_default().exp(),
+                Role::Origin => return effect.origin,
+            };
+            free.clamp(about.low, about.high)
+        };
+        let of = |effect: &Chosen| effect.about.parameters.iter().map(|about| value(effect, about)).collect();
+        Self { values: effects.iter().map(of).collect() }
+    }
+}
+
+/// What the effects do at one sample.
+#[derive(Clone, Copy, Debug, Default)]
+struct Deed {
+    temperature_c: f64,
+    delta_f_hz: f64,
+    bias_g: f64,
+}
+
+/// Runs the effects over a run, sample by sample; `None` if the core refuses the coefficients.
+fn deeds(run: &Run, effects: &[Chosen], coefficients: &Coefficients, max_gap_us: u32) -> Option<Vec<Deed>> {
+    let mut terms = Terms::<f64>::new(max_gap_us);
+    for (effect, values) in effects.iter().zip(&coefficients.values) {
+        terms.push(effect.about.id, effect.channel, usize::MAX, values.iter().copied()).ok()?;
+    }
+    let deed = |row: &crate::campaign::Row| {
+        let now = Observation::<f64>::new(&row.sample, &FROM_ZERO);
+        terms.advance(&row.sample);
+        let disturbance = terms.disturbance(&now, row.reference_g);
+        Deed {
+            temperature_c: disturbance.temperature_c,
+            delta_f_hz: disturbance.delta_f_hz,
+            bias_g: terms.bias_g(&now, row.reference_g),
+        }
+    };
+    Some(run.rows.iter().map(deed).collect())
+}
+
+/// Effects look at absolute quantities only, so the zeros don't matter here.
+const FROM_ZERO: Scaling = Scaling {
+    delta_f_zero_uhz: 0,
+    delta_f_gain_per_hz: 1.0,
+    temperature_zero_uc: 0,
+    temperature_gain_per_c: 1.0,
+    line_g: [0.0; 4],
+    output_g: 0.0,
+};
+
+/// One cell without effects, in scaled inputs and g.
+#[derive(Clone, Debug)]
+struct Still {
+    rows: Range<usize>,
+    x: f64,
+    t: f64,
+    reference_g: f64,
+}
+
+/// The rows of the training runs, moved by effects.
+pub struct MovedRows<'a> {
+    runs: Vec<(&'a Run, Vec<Still>)>,
+    effects: &'a [Chosen],
+    scale: InputScale,
+    line: Polynomial,
+    unit_g: f64,
+    max_gap_us: u32,
+    groups: Vec<Group>,
+    tangents: Vec<Tangent>,
+}
+
+/// What the rows are measured in.
+pub struct Frame {
+    /// Scale of the inputs.
+    pub scale: InputScale,
+    /// The line that the network departs from.
+    pub line: Polynomial,
+    /// g per unit of network output.
+    pub unit_g: f64,
+    /// Longest gap across which a memory is carried, µs.
+    pub max_gap_us: u32,
+}
+
+/// Step of the finite differences, relative for shapes (they are logarithms).
+const STEP: f64 = 1e-5;
+
+impl<'a> MovedRows<'a> {
+    /// The rows of `runs` under `effects`, each weighted by what `noise` says it is worth.
+    #[must_use]
+    pub fn new(runs: &[&'a Run], effects: &'a [Chosen], frame: Frame, noise: &Components) -> Self {
+        let Frame { scale, line, unit_g, max_gap_us } = frame;
+        let still = |run: &'a Run| (run, still_cells(run, &scale));
+        let runs: Vec<_> = runs.iter().copied().map(still).collect();
+        let group = |cells: &[Still]| Group {
+            rows: cells.iter().map(|cell| weigh(cell, noise)).collect(),
+            offset_variance: noise.run_variance(),
+        };
+        let groups = runs.iter().map(|(_, cells)| group(cells)).collect();
+        Self { runs, effects, scale, line, unit_g, max_gap_us, groups, tangents: Vec::new() }
+    }
+
+    /// The rows before any effect.
+    #[must_use]
+    pub fn still(mut self) -> Vec<Group> {
+        self.effects = &[];
+        self.update(&[], false);
+        self.groups
+    }
+
+    /// Moves the rows to where these coefficients put them.
+    fn place(&self, parameters: &[f64], mut put: impl FnMut(usize, usize, [f64; 3])) {
+        let coefficients = Coefficients::from_parameters(self.effects, parameters);
+        for (group, (run, cells)) in self.runs.iter().enumerate() {
+            let Some(deeds) = deeds(run, self.effects, &coefficients, self.max_gap_us) else { continue };
+            for (index, cell) in cells.iter().enumerate() {
+                put(group, index, self.placed(cell, &mean_deed(&deeds[cell.rows.clone()])));
+            }
+        }
+    }
+
+    /// Inputs and target of a cell on which the effects act: the compensator's formula, read backwards.
+    fn placed(&self, cell: &Still, deed: &Deed) -> [f64; 3] {
+        let x = cell.x - deed.delta_f_hz / self.scale.delta_f_half_span_hz;
+        let t = cell.t + deed.temperature_c / self.scale.temperature_half_span_c;
+        [x, t, (cell.reference_g + deed.bias_g - self.line.evaluate(x, t)) / self.unit_g]
+    }
+}
+
+fn still_cells(run: &Run, scale: &InputScale) -> Vec<Still> {
+    let still = |rows: Range<usize>| {
+        let datum = super::dataset::mean(&run.rows[rows.clone()], 0, scale);
+        Still { rows, x: datum.x, t: datum.t, reference_g: datum.reference_g }
+    };
+    cells(run, scale).into_iter().map(still).collect()
+}
+
+fn weigh(cell: &Still, noise: &Components) -> ValueRow {
+    let samples = cell.rows.len() as f64;
+    ValueRow { x: cell.x, t: cell.t, y: 0.0, weight: noise.weight(samples), samples }
+}
+
+fn mean_deed(deeds: &[Deed]) -> Deed {
+    let count = deeds.len() as f64;
+    deeds.iter().fold(Deed::default(), |sum, deed| Deed {
+        temperature_c: sum.temperature_c + deed.temperature_c / count,
+        delta_f_hz: sum.delta_f_hz + deed.delta_f_hz / count,
+        bias_g: sum.bias_g + deed.bias_g / count,
+    })
+}
+
+impl Rows for MovedRows<'_> {
+    fn parameters(&self) -> usize {
+        let free = |effect: &Chosen| effect.about.parameters.iter().filter(|about| about.role != Role::Origin).count();
+        self.effects.iter().map(free).sum()
+    }
+
+    fn update(&mut self, parameters: &[f64], tangents: bool) {
+        let mut groups = std::mem::take(&mut self.groups);
+        self.place(parameters, |group, index, [x, t, y]| {
+            let row = &mut groups[group].rows[index];
+            (row.x, row.t, row.y) = (x, t, y);
+        });
+        self.groups = groups;
+        if tangents {
+            self.tangents = self.differences(parameters);
+        }
+    }
+
+    fn groups(&self) -> &[Group] {
+        &self.groups
+    }
+
+    fn tangents(&self) -> &[Tangent] {
+        &self.tangents
+    }
+}
+
+impl MovedRows<'_> {
+    /// Tangents by forward differences from the rows' present place.
+    fn differences(&self, parameters: &[f64]) -> Vec<Tangent> {
+        let count: usize = self.groups.iter().map(|group| group.rows.len()).sum();
+        let mut tangents = vec![Tangent::default(); count * parameters.len()];
+        for j in 0..parameters.len() {
+            let mut stepped = parameters.to_vec();
+            stepped[j] += STEP;
+            let step = stepped[j] - parameters[j];
+            let mut next = 0;
+            self.place(&stepped, |group, index, [x, t, y]| {
+                let row = &self.groups[group].rows[index];
+                tangents[next * parameters.len() + j] =
+                    Tangent { x: (x - row.x) / step, t: (t - row.t) / step, y: (y - row.y) / step };
+                next += 1;
+            });
+        }
+        tangents
+    }
+}
