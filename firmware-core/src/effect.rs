@@ -1,6 +1,6 @@
 //! Physical effects beside the network: pure functions of one moment and their coefficients.
 //!
-//! History is observed once ([`crate::memory`]); effects only look. Each is one file with the same
+//! History is observed once ([`Memory`]); effects only look. Each is one file with the same
 //! skeleton: what happens physically, [`About`], [`Effect`], tests. A coefficient has the sign and
 //! unit of the physics (what the effect *does* to the sensor); the compensator takes it out again.
 //! `docs/adding-an-effect.md` shows how to write the next one.

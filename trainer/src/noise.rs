@@ -35,14 +35,15 @@ pub fn sample_sigma_g<'a>(runs: impl IntoIterator<Item = (&'a Run, &'a RunResidu
 
 /// Where the scatter of a residual comes from, as standard deviations.
 ///
-/// A calibration's residuals are not white: flicker makes a whole state lie off, turn-on and mounting
-/// a whole run. A fit that takes every sample for an independent witness believes them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A calibration's residuals are not white: flicker and table errors make a whole state lie off,
+/// turn-on and mounting a whole run. A fit that takes every sample for an independent witness believes
+/// them. States scatter differently from run to run: a recording at rest has no table errors.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Components {
     /// From sample to sample, g.
     pub sample_g: f64,
-    /// From state to state beyond what averaging samples leaves, g.
-    pub state_g: f64,
+    /// From state to state beyond what averaging samples leaves, g; run by run.
+    pub state_g: Vec<f64>,
     /// From run to run beyond what averaging states leaves, g.
     pub run_g: f64,
 }
@@ -59,30 +60,26 @@ pub struct Mean {
 }
 
 impl Components {
-    /// Method of moments from the residuals of means, given the sample-to-sample noise.
+    /// Method of moments from the residuals of means, grouped by run, given the sample-to-sample noise.
     #[must_use]
     pub fn estimate(sample_g: f64, means: &[Mean]) -> Self {
-        let variance_of = |mean: &Mean| sample_g * sample_g / mean.samples;
-        let (mut within, mut states) = (0.0, 0.0);
-        let (mut between, mut runs) = (0.0, 0.0);
-        for run in means.chunk_by(|a, b| a.run == b.run) {
-            let count = run.len() as f64;
-            let centre = run.iter().map(|mean| mean.residual_g).sum::<f64>() / count;
-            let scatter: f64 = run.iter().map(|mean| (mean.residual_g - centre).powi(2)).sum();
-            let noise: f64 = run.iter().map(variance_of).sum();
-            within += scatter - noise * (1.0 - count.recip());
-            states += count - 1.0;
-            between += centre * centre - (scatter / (count - 1.0).max(1.0)) / count;
-            runs += 1.0;
+        let runs: Vec<RunScatter> =
+            means.chunk_by(|a, b| a.run == b.run).map(|run| RunScatter::of(sample_g, run)).collect();
+        let count = runs.len() as f64;
+        let between = runs.iter().map(|run| run.centre_g.powi(2) - run.centre_variance).sum::<f64>() / count.max(1.0);
+        Self {
+            sample_g,
+            state_g: runs.iter().map(|run| run.state_variance.sqrt()).collect(),
+            run_g: between.max(0.0).sqrt(),
         }
-        let root = |sum: f64, count: f64| if count > 0.0 { (sum / count).max(0.0).sqrt() } else { 0.0 };
-        Self { sample_g, state_g: root(within, states), run_g: root(between, runs) }
     }
 
-    /// Weight of a mean of so many samples, where a single sample without state scatter weighs one.
+    /// Weight of a mean of so many samples of training run number `run`, where a single sample without
+    /// state scatter weighs one.
     #[must_use]
-    pub fn weight(&self, samples: f64) -> f64 {
-        samples / (1.0 + samples * (self.state_g / self.sample_g).powi(2))
+    pub fn weight(&self, run: usize, samples: f64) -> f64 {
+        let state_g = self.state_g.get(run).copied().unwrap_or_default();
+        samples / (1.0 + samples * (state_g / self.sample_g).powi(2))
     }
 
     /// Variance of a run's offset in units of the variance of one sample.
@@ -92,9 +89,62 @@ impl Components {
     }
 }
 
+struct RunScatter {
+    centre_g: f64,
+    centre_variance: f64,
+    state_variance: f64,
+}
+
+impl RunScatter {
+    fn of(sample_g: f64, means: &[Mean]) -> Self {
+        let count = means.len() as f64;
+        let centre_g = means.iter().map(|mean| mean.residual_g).sum::<f64>() / count;
+        let scatter: f64 = means.iter().map(|mean| (mean.residual_g - centre_g).powi(2)).sum();
+        let noise: f64 = means.iter().map(|mean| sample_g * sample_g / mean.samples).sum();
+        let freedom = (count - 1.0).max(1.0);
+        Self {
+            centre_g,
+            centre_variance: scatter / freedom / count,
+            state_variance: ((scatter - noise * (1.0 - count.recip())) / freedom).max(0.0),
+        }
+    }
+}
+
 /// Root mean square.
 #[must_use]
 pub fn rms<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     let (sum, count) = values.into_iter().fold((0.0, 0_u64), |(sum, count), value| (sum + value * value, count + 1));
     if count == 0 { 0.0 } else { (sum / count as f64).sqrt() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scatter_is_told_apart_by_where_it_comes_from() {
+        // Two runs of states ±3 and ±1 about offsets of +10 and −10; sample noise is negligible.
+        let states = |run: usize, offset: f64, size: f64| {
+            (0..100).map(move |k| Mean {
+                run,
+                samples: 30.0,
+                residual_g: offset + if k % 2 == 0 { size } else { -size },
+            })
+        };
+        let means: Vec<Mean> = states(0, 10.0, 3.0).chain(states(1, -10.0, 1.0)).collect();
+        let components = Components::estimate(1e-3, &means);
+        assert!((components.state_g[0] - 3.0).abs() < 0.05 && (components.state_g[1] - 1.0).abs() < 0.05);
+        assert!((components.run_g - 10.0).abs() < 0.05, "{components:?}");
+        assert!(components.weight(1, 30.0) > 8.0 * components.weight(0, 30.0));
+    }
+
+    #[test]
+    fn white_noise_has_neither_state_nor_run_scatter() {
+        // A deterministic sequence with the moments of white noise averaged over 25 samples.
+        let value = |k: usize| 0.2 * (2.0_f64).sqrt() * (k as f64 * 2.399_963).sin();
+        let means: Vec<Mean> = (0..400).map(|k| Mean { run: k / 200, samples: 25.0, residual_g: value(k) }).collect();
+        let components = Components::estimate(1.0, &means);
+        assert!(components.state_g.iter().all(|state_g| *state_g < 0.05), "{components:?}");
+        assert!(components.run_g < 0.05, "{components:?}");
+    }
 }

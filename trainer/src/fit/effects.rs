@@ -146,11 +146,11 @@ impl<'a> MovedRows<'a> {
         let Frame { scale, line, unit_g, max_gap_us } = frame;
         let still = |run: &'a Run| (run, still_cells(run, &scale));
         let runs: Vec<_> = runs.iter().copied().map(still).collect();
-        let group = |cells: &[Still]| Group {
-            rows: cells.iter().map(|cell| weigh(cell, noise)).collect(),
+        let group = |(run, (_, cells)): (usize, &(&Run, Vec<Still>))| Group {
+            rows: cells.iter().map(|cell| weigh(run, cell, noise)).collect(),
             offset_variance: noise.run_variance(),
         };
-        let groups = runs.iter().map(|(_, cells)| group(cells)).collect();
+        let groups = runs.iter().enumerate().map(group).collect();
         Self { runs, effects, scale, line, unit_g, max_gap_us, groups, tangents: Vec::new() }
     }
 
@@ -189,9 +189,9 @@ fn still_cells(run: &Run, scale: &InputScale) -> Vec<Still> {
     cells(run, scale).into_iter().map(still).collect()
 }
 
-fn weigh(cell: &Still, noise: &Components) -> ValueRow {
+fn weigh(run: usize, cell: &Still, noise: &Components) -> ValueRow {
     let samples = cell.rows.len() as f64;
-    ValueRow { x: cell.x, t: cell.t, y: 0.0, weight: noise.weight(samples), samples }
+    ValueRow { x: cell.x, t: cell.t, y: 0.0, weight: noise.weight(run, samples), samples }
 }
 
 fn mean_deed(deeds: &[Deed]) -> Deed {

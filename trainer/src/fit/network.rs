@@ -19,8 +19,8 @@
 //! Effects move inputs and targets of the rows with parameters of their own ([`Rows`]); their tangents
 //! join D, with weight one instead of an output weight.
 //!
-//! Rows of a second kind ask for the slope ∂y/∂x instead of the value; they keep an accelerometer
-//! from becoming a classifier of the levels that it was trained on.
+//! Anchors ask softly for the values and slopes ∂y/∂x of a smooth instrument, which keeps an
+//! accelerometer from becoming a classifier of the levels and nodes that it was trained on.
 
 use super::levenberg_marquardt::{Problem, Quadratic};
 use firmware_core::activation::{curvature, sigmoid, slope};
@@ -121,6 +121,15 @@ pub struct SlopeRow {
     pub weight: f64,
 }
 
+/// What a smooth instrument would do, where the measurements leave it open.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Anchors {
+    /// Values to stay near.
+    pub values: Vec<ValueRow>,
+    /// Slopes to stay near.
+    pub slopes: Vec<SlopeRow>,
+}
+
 /// Gaussian priors of the weights: precision in units of a value row of weight one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prior {
@@ -155,12 +164,12 @@ impl Fit {
     }
 }
 
-/// The separable problem: rows, slopes and priors.
+/// The separable problem: rows, anchors and priors.
 ///
 /// Its parameters are the hidden weights, then the rows' own.
 pub struct NetworkProblem<'a, R> {
     rows: R,
-    slopes: &'a [SlopeRow],
+    anchors: &'a Anchors,
     prior: Prior,
     gram: Box<Gram>,
 }
@@ -175,8 +184,8 @@ const JITTER: f64 = 1e-13;
 impl<'a, R: Rows> NetworkProblem<'a, R> {
     /// The problem of these rows.
     #[must_use]
-    pub fn new(rows: R, slopes: &'a [SlopeRow], prior: Prior) -> Self {
-        Self { rows, slopes, prior, gram: Box::new([[0.0; COLUMNS]; COLUMNS]) }
+    pub fn new(rows: R, anchors: &'a Anchors, prior: Prior) -> Self {
+        Self { rows, anchors, prior, gram: Box::new([[0.0; COLUMNS]; COLUMNS]) }
     }
 
     /// The rows, where they were moved to last.
@@ -219,7 +228,11 @@ impl<'a, R: Rows> NetworkProblem<'a, R> {
             accumulate(&mut self.gram, &sum[..used], -group.offset_variance / (1.0 + group.offset_variance * weight));
         }
         columns[EXTRA..].fill(0.0);
-        for row in self.slopes {
+        for row in &self.anchors.values {
+            value_columns(row, hidden, &mut columns);
+            accumulate(&mut self.gram, &columns[..used], row.weight);
+        }
+        for row in &self.anchors.slopes {
             slope_columns(row, hidden, &mut columns);
             accumulate(&mut self.gram, &columns[..used], row.weight);
         }

@@ -28,21 +28,51 @@ impl Polynomial {
     /// Weighted least squares, with no higher powers than the data's distinct levels and temperatures carry.
     #[must_use]
     pub fn fit(data: &[Datum]) -> Self {
-        let degree_x = MOST_X.min(distinct(data.iter().map(|datum| datum.x)).saturating_sub(1));
-        let degree_t = MOST_T.min(distinct(data.iter().map(|datum| datum.t)).saturating_sub(1));
+        let (degree_x, degree_t) = Self::degrees_for(data);
         Self::fit_degrees(data, degree_x, degree_t)
+    }
+
+    /// The same, with data weighted by `weight` and an offset of `offset_variance` (in units of the
+    /// variance of a datum of weight one) shared by each run.
+    #[must_use]
+    pub fn fit_mixed(data: &[Datum], weight: impl Fn(&Datum) -> f64, offset_variance: f64) -> Self {
+        let (degree_x, degree_t) = Self::degrees_for(data);
+        Self::solve(data, degree_x, degree_t, weight, offset_variance)
     }
 
     /// Weighted least squares with these highest powers.
     #[must_use]
     pub fn fit_degrees(data: &[Datum], degree_x: usize, degree_t: usize) -> Self {
+        Self::solve(data, degree_x, degree_t, |datum| datum.weight, 0.0)
+    }
+
+    fn degrees_for(data: &[Datum]) -> (usize, usize) {
+        let powers = |most: usize, values: &mut dyn Iterator<Item = f64>| most.min(distinct(values).saturating_sub(1));
+        (powers(MOST_X, &mut data.iter().map(|datum| datum.x)), powers(MOST_T, &mut data.iter().map(|datum| datum.t)))
+    }
+
+    fn solve(
+        data: &[Datum],
+        degree_x: usize,
+        degree_t: usize,
+        weight: impl Fn(&Datum) -> f64,
+        offset_variance: f64,
+    ) -> Self {
         let terms = (degree_x + 1) * (degree_t + 1);
-        let mut normal = DMatrix::zeros(terms, terms);
-        let mut right = DVector::zeros(terms);
-        for row in data {
-            let basis = basis(degree_x, degree_t, row.x, row.t);
-            normal.ger(row.weight, &basis, &basis, 1.0);
-            right.axpy(row.weight * row.reference_g, &basis, 1.0);
+        let (mut normal, mut right) = (DMatrix::zeros(terms, terms), DVector::zeros(terms));
+        for run in data.chunk_by(|a, b| a.run == b.run) {
+            let (mut sum, mut value, mut total) = (DVector::zeros(terms), 0.0, 0.0);
+            for datum in run {
+                let (basis, weight) = (basis(degree_x, degree_t, datum.x, datum.t), weight(datum));
+                normal.ger(weight, &basis, &basis, 1.0);
+                right.axpy(weight * datum.reference_g, &basis, 1.0);
+                sum.axpy(weight, &basis, 1.0);
+                value += weight * datum.reference_g;
+                total += weight;
+            }
+            let shared = -offset_variance / (1.0 + offset_variance * total);
+            normal.ger(shared, &sum, &sum, 1.0);
+            right.axpy(shared * value, &sum, 1.0);
         }
         let inverse = pseudo_inverse(normal);
         Self { degree_x, degree_t, coefficients: &inverse * right, inverse }
@@ -58,6 +88,13 @@ impl Polynomial {
     #[must_use]
     pub fn slope(&self, x: f64, t: f64) -> f64 {
         slope_basis(self.degree_x, self.degree_t, x, t).dot(&self.coefficients)
+    }
+
+    /// Standard deviation of [`Polynomial::evaluate`] for a residual of `sigma_g` per datum of weight one, g.
+    #[must_use]
+    pub fn value_sigma(&self, x: f64, t: f64, sigma_g: f64) -> f64 {
+        let basis = basis(self.degree_x, self.degree_t, x, t);
+        sigma_g * (&self.inverse * &basis).dot(&basis).max(0.0).sqrt()
     }
 
     /// Standard deviation of [`Polynomial::slope`] for a residual of `sigma_g` per row of weight one, g.
@@ -107,7 +144,7 @@ fn pseudo_inverse(normal: DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// How many values are further apart than [`SAME_LEVEL`].
-fn distinct(values: impl Iterator<Item = f64>) -> usize {
+fn distinct(values: &mut dyn Iterator<Item = f64>) -> usize {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     let mut count = 0;

@@ -4,7 +4,7 @@ use super::{Candidate, Restart, Search, Task};
 use crate::fit::dataset::Datum;
 use crate::fit::effects::{Coefficients, Frame, MovedRows};
 use crate::fit::levenberg_marquardt::{Limits, Termination, minimise};
-use crate::fit::network::{Fit, Group, NONLINEAR, NetworkProblem, Prior, Rows, SlopeRow};
+use crate::fit::network::{Anchors, Fit, Group, NONLINEAR, NetworkProblem, Prior, Rows, SlopeRow, ValueRow};
 use crate::fit::polynomial::Polynomial;
 use crate::fit::random::{between, stream};
 use crate::noise::{Components, Mean};
@@ -23,8 +23,11 @@ const OUTPUT_SIZE: f64 = 10.0;
 const HIDDEN_SIZE: f64 = 1.0;
 /// How far a resonator's slope may wander from the campaign's smooth scale factor before data must insist.
 const SLOPE_ALLOWANCE: f64 = 300e-6;
-/// The slope is held on a grid of so many points along each input.
-const SLOPE_GRID: i32 = 7;
+/// How far the instrument may depart from a smooth one before data must insist, in units of its
+/// departure from a line.
+const VALUE_ALLOWANCE: f64 = 0.03;
+/// Anchors stand on a grid of so many points along each input.
+const ANCHOR_GRID: i32 = 9;
 /// Steepest start of a hidden unit.
 const STEEPEST_START: f64 = 2.5;
 const LIMITS: Limits = Limits { iterations: 200, decrease: 1e-5, step: 1e-9 };
@@ -40,7 +43,7 @@ const FIRST_AMPLITUDE: f64 = 1e-6;
 /// believed; the best network tells it better, and is trained on with that. Effects join the best
 /// network from several shapes and are fitted together with it.
 pub(super) fn search(task: &Task) -> Search {
-    let first = Problem::new(task, &task.noise(|datum| task.polynomial.evaluate(datum.x, datum.t)));
+    let first = Problem::new(task, &task.data, &task.noise(|datum| task.polynomial.evaluate(datum.x, datum.t)));
     let still = first.still_rows(task);
     let attempt = |index: usize| {
         let start = random_start(&mut stream(task.settings.seed, index as u64));
@@ -50,7 +53,7 @@ pub(super) fn search(task: &Task) -> Search {
     let restarts = trials.iter().map(|trial| trial.restart).collect();
     let best = least(trials).and_then(|trial| with_effects(task, &first, trial));
     let refined = best.as_ref().and_then(|best| {
-        let known = Problem::new(task, &Components::estimate(task.sigma_g, &best.scatter));
+        let known = Problem::new(task, &best.data, &Components::estimate(task.sigma_g, &best.scatter));
         let trial = known.descend_moved(task, task.settings.restarts, &best.point)?;
         Some(known.candidate(task, &trial))
     });
@@ -104,6 +107,8 @@ struct Trial {
     point: Vec<f64>,
     fit: Fit,
     scatter: Vec<Mean>,
+    /// The training data with the effects' share taken out.
+    data: Vec<Datum>,
 }
 
 fn descend(task: &Task, problem: &Problem, rows: impl Rows, index: usize, start: &[f64]) -> Option<Trial> {
@@ -111,7 +116,7 @@ fn descend(task: &Task, problem: &Problem, rows: impl Rows, index: usize, start:
         return None;
     }
     let weight: f64 = rows.groups().iter().flat_map(|group| &group.rows).map(|row| row.weight).sum();
-    let mut network = NetworkProblem::new(rows, &problem.slopes, problem.prior);
+    let mut network = NetworkProblem::new(rows, &problem.anchors, problem.prior);
     let report = |iteration, cost: f64, done| {
         let residual_g = (2.0 * cost / weight).sqrt() * problem.unit_g;
         task.progress.restart(RestartNews { index, iteration, residual_g, done });
@@ -123,12 +128,13 @@ fn descend(task: &Task, problem: &Problem, rows: impl Rows, index: usize, start:
     report(minimum.iterations, minimum.cost, true);
     let fit = network.fit(&minimum.point)?;
     let scatter = scatter(network.rows(), &fit, problem.unit_g);
+    let data = problem.undisturbed(network.rows());
     let restart = Restart {
         residual_g: rms(&scatter),
         iterations: minimum.iterations,
         converged: minimum.termination != Termination::IterationLimit,
     };
-    Some(Trial { restart, cost: minimum.cost, point: minimum.point, fit, scatter })
+    Some(Trial { restart, cost: minimum.cost, point: minimum.point, fit, scatter, data })
 }
 
 /// Residuals of the rows' means.
@@ -154,29 +160,47 @@ fn rms(means: &[Mean]) -> f64 {
 /// The task in the units of its departure from a line.
 struct Problem {
     noise: Components,
-    slopes: Vec<SlopeRow>,
+    anchors: Anchors,
     prior: Prior,
     line: Polynomial,
     unit_g: f64,
 }
 
 impl Problem {
-    fn new(task: &Task, noise: &Components) -> Self {
-        let line = Polynomial::fit_degrees(&task.data, 1, 1);
+    /// The problem of `data`, whose effects were taken out as far as they are known.
+    fn new(task: &Task, data: &[Datum], noise: &Components) -> Self {
+        let line = Polynomial::fit_degrees(data, 1, 1);
         let departure = |datum: &Datum| Mean {
             run: datum.run,
             samples: datum.weight,
             residual_g: datum.reference_g - line.evaluate(datum.x, datum.t),
         };
-        let unit_g = rms(&task.data.iter().map(departure).collect::<Vec<_>>()).max(noise.sample_g);
+        let unit_g = rms(&data.iter().map(departure).collect::<Vec<_>>()).max(noise.sample_g);
         let unit_variance = (noise.sample_g / unit_g).powi(2);
+        let weight = |datum: &Datum| noise.weight(datum.run, datum.weight);
+        let smooth = Polynomial::fit_mixed(data, weight, noise.run_variance());
         Self {
-            noise: *noise,
-            slopes: slope_rows(task, &line, unit_g),
+            anchors: anchors(task, &smooth, &line, unit_g),
+            noise: noise.clone(),
             prior: Prior { output: unit_variance / OUTPUT_SIZE.powi(2), hidden: unit_variance / HIDDEN_SIZE.powi(2) },
             line,
             unit_g,
         }
+    }
+
+    /// The rows where the effects have moved them, as data.
+    fn undisturbed(&self, rows: &impl Rows) -> Vec<Datum> {
+        let mut data = Vec::new();
+        for (run, group) in rows.groups().iter().enumerate() {
+            data.extend(group.rows.iter().map(|row| Datum {
+                x: row.x,
+                t: row.t,
+                reference_g: row.y * self.unit_g + self.line.evaluate(row.x, row.t),
+                weight: row.samples,
+                run,
+            }));
+        }
+        data
     }
 
     fn moved_rows<'a>(&self, task: &'a Task) -> MovedRows<'a> {
@@ -219,20 +243,37 @@ impl Problem {
     }
 }
 
-/// Asks on a grid that the slope be the scale factor that the campaign itself measured.
-fn slope_rows(task: &Task, line: &Polynomial, unit_g: f64) -> Vec<SlopeRow> {
-    let grid = || (0..SLOPE_GRID).map(|k| 2.0 * f64::from(k) / f64::from(SLOPE_GRID - 1) - 1.0);
-    let mut rows = Vec::new();
+/// On a grid over the domain: the smooth instrument's values and slopes.
+///
+/// The slope is the scale factor that the campaign itself measured, or the stated one of a sensor
+/// that lay still.
+fn anchors(task: &Task, smooth: &Polynomial, line: &Polynomial, unit_g: f64) -> Anchors {
+    let grid = || (0..ANCHOR_GRID).map(|k| 2.0 * f64::from(k) / f64::from(ANCHOR_GRID - 1) - 1.0);
+    let weight = |sigma_g: f64| (task.sigma_g / sigma_g).powi(2);
+    let mut anchors = Anchors::default();
     for (x, t) in grid().flat_map(|x| grid().map(move |t| (x, t))) {
-        let (wanted, measured_sigma) = match task.settings.scale_factor_hz_per_g {
+        let (slope_g, measured_g) = match task.settings.scale_factor_hz_per_g {
             Some(stated) => (task.scale.delta_f_half_span_hz / stated, 0.0),
-            None => (task.polynomial.slope(x, t), task.polynomial.slope_sigma(x, t, task.sigma_g)),
+            None => (smooth.slope(x, t), smooth.slope_sigma(x, t, task.sigma_g)),
         };
-        let sigma = measured_sigma.hypot(SLOPE_ALLOWANCE * wanted);
-        let weight = (task.sigma_g / sigma).powi(2);
-        rows.push(SlopeRow { x, t, slope: (wanted - line.slope(x, t)) / unit_g, weight });
+        anchors.slopes.push(SlopeRow {
+            x,
+            t,
+            slope: (slope_g - line.slope(x, t)) / unit_g,
+            weight: weight(measured_g.hypot(SLOPE_ALLOWANCE * slope_g)),
+        });
+        let measured_g = smooth.value_sigma(x, t, task.sigma_g);
+        if task.settings.scale_factor_hz_per_g.is_none() {
+            anchors.values.push(ValueRow {
+                x,
+                t,
+                y: (smooth.evaluate(x, t) - line.evaluate(x, t)) / unit_g,
+                weight: weight(measured_g.hypot(VALUE_ALLOWANCE * unit_g)),
+                samples: 0.0,
+            });
+        }
     }
-    rows
+    anchors
 }
 
 /// Units whose steepest place lies within the domain, in random directions.
