@@ -19,11 +19,12 @@ use tests::workspace::{root, text};
 use trainer::fit::levenberg_marquardt::{Limits, Minimum, Problem, Quadratic, minimise};
 
 /// Matching digits that every parameter of every problem must have from either start.
-const LEAST_DIGITS: f64 = 8.0;
+const LEAST_DIGITS: f64 = 9.0;
 /// The values are certified to so many digits; more agreement means nothing.
 const CERTIFIED_DIGITS: f64 = 11.0;
-/// Ends where the gradient is rounding and nothing else.
-const LIMITS: Limits = Limits { iterations: 5000, decrease: 1e-26, step: 0.0 };
+/// Ends where the gradient is rounding and nothing else. MGH10 follows a curved valley through fifty
+/// orders of magnitude of its first parameter.
+const LIMITS: Limits = Limits { iterations: 10_000, decrease: 1e-26, step: 0.0 };
 
 /// One data file.
 struct Certified {
@@ -134,31 +135,30 @@ fn solve(certified: &Certified, start: &[f64]) -> Minimum {
 #[test]
 fn every_certified_minimum_is_found_from_both_starts() {
     let mut table =
-        format!("{:10} {:>8} {:>8} {:>11} {:>11}\n", "problem", "digits 1", "digits 2", "iterations 1", "2");
+        format!("{:10}{:>10}{:>10}{:>14}{:>14}\n", "", "digits 1", "digits 2", "iterations 1", "iterations 2");
     let mut least = f64::INFINITY;
     for certified in problems() {
-        let minima = [0, 1].map(|k| solve(&certified, &certified.starts[k]));
-        let [first, second] = [0, 1].map(|k| certified.digits(&minima[k].point));
+        let minima = certified.starts.each_ref().map(|start| solve(&certified, start));
+        let [first, second] = minima.each_ref().map(|minimum| certified.digits(&minimum.point));
+        let [i, j] = minima.map(|minimum| minimum.iterations);
+        writeln!(table, "{:10}{first:>10.1}{second:>10.1}{i:>14}{j:>14}", certified.name).expect("text grows");
         least = least.min(first).min(second);
-        let [i, j] = [0, 1].map(|k| minima[k].iterations);
-        let [e, f] = [0, 1].map(|k| minima[k].termination);
-        writeln!(table, "{:10} {first:>8.1} {second:>8.1} {i:>11} {j:>11} {e:?} {f:?}", certified.name).expect("text");
     }
     println!("{table}");
-    assert!(least >= LEAST_DIGITS, "some minimum is not found:\n{table}");
+    assert!(least >= LEAST_DIGITS, "a minimum was not found:\n{table}");
 }
 
 #[test]
-fn the_certified_sums_of_squares_are_ours_at_the_certified_parameters() {
+fn the_models_and_data_give_the_certified_sums_of_squares() {
     for certified in problems() {
+        // Lanczos1's sum is 1e-25: eleven digits of its parameters are not enough to compute it.
+        let rounding = if certified.name == "Lanczos1" { 1e-20 } else { 1e-9 * certified.cost };
         let cost = Regression::of(&certified).cost(&certified.parameters);
-        // Ten digits of the residual are certified; Lanczos1's are rounding of its data.
-        let tolerance = if certified.name == "Lanczos1" { 1e-3 } else { 1e-9 };
-        assert!((cost / certified.cost - 1.0).abs() < tolerance, "{}: {cost} {}", certified.name, certified.cost);
+        assert!((cost - certified.cost).abs() < rounding, "{}: {cost}, not {}", certified.name, certified.cost);
     }
 }
 
 #[test]
-fn all_problems_are_there() {
+fn all_of_nists_problems_are_there() {
     assert_eq!(problems().len(), 27);
 }

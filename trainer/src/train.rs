@@ -56,6 +56,22 @@ pub struct TrainSettings {
     pub serial: String,
     /// Physical effects beside the network; second-order method only.
     pub effects: Vec<EffectChoice>,
+    /// What keeps the network smooth between the measurements; second-order method only.
+    pub anchoring: Anchoring,
+}
+
+/// What keeps the network smooth where the measurements leave it open.
+/// `docs/decisions/0003-anchors.md` compares them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchoring {
+    /// Nothing but the priors of the weights.
+    Nothing,
+    /// Slopes: the scale factor that the campaign measured.
+    Slopes,
+    /// Values of the smooth instrument.
+    Values,
+    /// Both; the default.
+    Both,
 }
 
 /// A physical effect to fit.
@@ -103,6 +119,7 @@ impl TrainSettings {
             scale_factor_hz_per_g: None,
             serial: String::new(),
             effects: Vec::new(),
+            anchoring: Anchoring::Both,
         }
     }
 }

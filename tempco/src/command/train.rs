@@ -127,8 +127,10 @@ pub fn train_with_bar(
 }
 
 fn text(campaign: &Campaign, split: &Split, trained: &Trained, comparison: &Comparison) -> String {
+    let each = trained.restarts.iter().map(|restart| format!("{:.2}", restart.residual_g * 1e6));
+    let each = each.collect::<Vec<_>>().join(" ");
     format!(
-        "{} rows in {} runs; {}.\n{}\n{}",
+        "{} rows in {} runs; {}.\n{}  in order, µg: {each}\n\n{}",
         campaign.row_count(),
         campaign.runs.len(),
         split.basis,

@@ -6,7 +6,7 @@
 //! squared condition number of normal equations costs iterations and not digits (the NIST certified
 //! problems in the tests hold it to that).
 //!
-//! Damping after Nielsen, IMM-REP-1999-05; scaling after Moré 1978.
+//! Damping after Nielsen, IMM-REP-1999-05; scaling after Moré 1978, but with a memory that fades.
 
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
@@ -81,10 +81,15 @@ pub struct Minimum {
     pub termination: Termination,
 }
 
-/// Damping relative to the matrix's diagonal at the start.
-const FIRST_DAMPING: f64 = 1e-2;
+/// Damping relative to the matrix's diagonal at the start. Far from a minimum the model is good for a
+/// short step only; a long one may end where no gradient leads back from. Caution costs ten steps.
+const FIRST_DAMPING: f64 = 1e3;
 const LEAST_DAMPING: f64 = 1e-15;
 const MOST_DAMPING: f64 = 1e16;
+/// Share of a remembered scale that is left after an accepted step.
+const FADING: f64 = 0.9;
+/// A difference of two costs below this fraction of them is rounding.
+const ROUNDING: f64 = 1e-10;
 
 /// Minimises `problem` from `start`. After each accepted step `observe` sees iteration and cost.
 pub fn minimise(
@@ -119,6 +124,8 @@ struct Search {
     scale: DVector<f64>,
     damping: f64,
     growth: f64,
+    /// The decrease that the last step promised.
+    promised: f64,
 }
 
 impl Search {
@@ -132,16 +139,18 @@ impl Search {
             quadratic,
             damping: FIRST_DAMPING,
             growth: 2.0,
+            promised: f64::INFINITY,
         };
         search.rescale();
         search
     }
 
-    /// Moré's scaling: the largest diagonal seen so far, so that a parameter whose influence fades is
-    /// not suddenly allowed to run away.
+    /// Moré's scaling: the largest diagonal of late, so that a parameter whose influence fades is not
+    /// suddenly allowed to run away. Of late, because one that was much stronger long ago must not stay
+    /// frozen for ever.
     fn rescale(&mut self) {
         for (scale, diagonal) in self.scale.iter_mut().zip(self.quadratic.hessian.diagonal().iter()) {
-            *scale = scale.max(*diagonal);
+            *scale = (FADING * *scale).max(*diagonal);
         }
     }
 
@@ -149,17 +158,25 @@ impl Search {
         let Some(direction) = self.direction() else {
             return self.reject();
         };
-        let predicted = self.predicted_decrease(&direction);
-        if predicted <= limits.decrease * self.quadratic.cost || predicted <= 0.0 {
+        let promised = self.predicted_decrease(&direction);
+        if promised <= limits.decrease * self.quadratic.cost || promised <= 0.0 {
             return Step::End(Termination::Converged);
         }
         if self.is_small(&direction, limits.step) {
             return Step::End(Termination::SmallStep);
         }
+        let rounding = ROUNDING * self.quadratic.cost;
+        if promised <= rounding && promised >= self.promised {
+            return Step::End(Termination::Converged);
+        }
+        self.promised = promised;
         for ((trial, point), d) in self.trial.iter_mut().zip(&self.point).zip(direction.iter()) {
             *trial = point + d;
         }
-        let ratio = (self.quadratic.cost - problem.cost(&self.trial)) / predicted;
+        let decrease = self.quadratic.cost - problem.cost(&self.trial);
+        // The gradient has more digits than the difference of two costs: where that is rounding, the
+        // promise counts, as long as the next one is smaller.
+        let ratio = if promised <= rounding && decrease >= -rounding { 1.0 } else { decrease / promised };
         if ratio > 1e-4 {
             self.accept(problem, ratio);
             Step::Accepted
@@ -171,10 +188,9 @@ impl Search {
     /// (H + λ·diag)·d = −g; `None` where rounding has made the matrix indefinite.
     fn direction(&self) -> Option<DVector<f64>> {
         let mut damped = self.quadratic.hessian.clone();
-        let largest = self.scale.max();
         for (i, scale) in self.scale.iter().enumerate() {
-            // A parameter without any influence still needs a pivot.
-            damped[(i, i)] += self.damping * scale.max(1e-12 * largest).max(f64::MIN_POSITIVE);
+            // A parameter without any influence still needs a pivot; whichever, for its gradient is zero.
+            damped[(i, i)] += self.damping * if *scale > 0.0 { *scale } else { 1.0 };
         }
         let solution = damped.cholesky()?.solve(&-&self.quadratic.gradient);
         solution.iter().all(|value| value.is_finite()).then_some(solution)
@@ -213,8 +229,12 @@ impl Search {
 mod tests {
     use super::*;
 
-    /// Rosenbrock's valley as a sum of two squares.
-    struct Rosenbrock;
+    /// Rosenbrock's valley as a sum of two squares, its second parameter in any unit.
+    struct Rosenbrock {
+        unit: f64,
+    }
+
+    const ROSENBROCK: Rosenbrock = Rosenbrock { unit: 1.0 };
 
     impl Problem for Rosenbrock {
         fn parameters(&self) -> usize {
@@ -222,13 +242,13 @@ mod tests {
         }
 
         fn cost(&mut self, p: &[f64]) -> f64 {
-            let (r1, r2) = (10.0 * (p[1] - p[0] * p[0]), 1.0 - p[0]);
+            let (r1, r2) = (10.0 * (p[1] * self.unit - p[0] * p[0]), 1.0 - p[0]);
             0.5 * (r1 * r1 + r2 * r2)
         }
 
         fn linearise(&mut self, p: &[f64], quadratic: &mut Quadratic) {
-            let r = DVector::from_vec(vec![10.0 * (p[1] - p[0] * p[0]), 1.0 - p[0]]);
-            let j = DMatrix::from_row_slice(2, 2, &[-20.0 * p[0], 10.0, -1.0, 0.0]);
+            let r = DVector::from_vec(vec![10.0 * (p[1] * self.unit - p[0] * p[0]), 1.0 - p[0]]);
+            let j = DMatrix::from_row_slice(2, 2, &[-20.0 * p[0], 10.0 * self.unit, -1.0, 0.0]);
             quadratic.cost = 0.5 * r.norm_squared();
             quadratic.gradient = j.transpose() * &r;
             quadratic.hessian = j.transpose() * j;
@@ -239,19 +259,34 @@ mod tests {
 
     #[test]
     fn it_walks_through_rosenbrocks_valley() {
-        let minimum = minimise(&mut Rosenbrock, &[-1.2, 1.0], &LIMITS, |_, _| ControlFlow::Continue(()));
+        let minimum = minimise(&mut ROSENBROCK, &[-1.2, 1.0], &LIMITS, |_, _| ControlFlow::Continue(()));
         assert!((minimum.point[0] - 1.0).abs() < 1e-12 && (minimum.point[1] - 1.0).abs() < 1e-12, "{minimum:?}");
         assert!(minimum.iterations < 60, "{minimum:?}");
     }
 
     #[test]
+    fn it_takes_the_same_path_in_any_units() {
+        let path = |unit: f64| {
+            let mut costs = Vec::new();
+            minimise(&mut Rosenbrock { unit }, &[-1.2, unit.recip()], &LIMITS, |_, cost| {
+                costs.push(cost);
+                ControlFlow::Continue(())
+            });
+            costs
+        };
+        // Powers of two, so that the arithmetic is the same to the last bit.
+        let units = [60, -60].map(|exponent| 2.0_f64.powi(exponent));
+        assert!(units.iter().all(|unit| path(*unit) == path(1.0)));
+    }
+
+    #[test]
     fn it_stops_when_told_to_and_keeps_what_it_had() {
         let mut seen = 0;
-        let minimum = minimise(&mut Rosenbrock, &[-1.2, 1.0], &LIMITS, |_, _| {
+        let minimum = minimise(&mut ROSENBROCK, &[-1.2, 1.0], &LIMITS, |_, _| {
             seen += 1;
             if seen == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         assert_eq!(minimum.termination, Termination::Cancelled);
-        assert!(minimum.cost < Rosenbrock.cost(&[-1.2, 1.0]));
+        assert!(minimum.cost < ROSENBROCK.cost(&[-1.2, 1.0]));
     }
 }

@@ -1,6 +1,6 @@
 //! The default: variable projection with Levenberg–Marquardt.
 
-use super::{Candidate, Restart, Search, Task};
+use super::{Anchoring, Candidate, Restart, Search, Task};
 use crate::fit::dataset::Datum;
 use crate::fit::effects::{Coefficients, Frame, MovedRows};
 use crate::fit::levenberg_marquardt::{Limits, Termination, minimise};
@@ -19,7 +19,7 @@ use std::ops::ControlFlow;
 /// Expected size of an output weight, in units of the departure from the line.
 const OUTPUT_SIZE: f64 = 10.0;
 /// Expected size of a hidden weight. A unit this steep bends over the whole domain: an instrument is
-/// smooth until data insist on the contrary. `docs/decisions/0003-priors.md` has the comparison.
+/// smooth until data insist on the contrary. `docs/decisions/0003-anchors.md` has the comparison.
 const HIDDEN_SIZE: f64 = 1.0;
 /// How far a resonator's slope may wander from the campaign's smooth scale factor before data must insist.
 const SLOPE_ALLOWANCE: f64 = 300e-6;
@@ -251,19 +251,23 @@ fn anchors(task: &Task, smooth: &Polynomial, line: &Polynomial, unit_g: f64) -> 
     let grid = || (0..ANCHOR_GRID).map(|k| 2.0 * f64::from(k) / f64::from(ANCHOR_GRID - 1) - 1.0);
     let weight = |sigma_g: f64| (task.sigma_g / sigma_g).powi(2);
     let mut anchors = Anchors::default();
+    let anchoring = task.settings.anchoring;
+    let still = task.settings.scale_factor_hz_per_g.is_some();
     for (x, t) in grid().flat_map(|x| grid().map(move |t| (x, t))) {
         let (slope_g, measured_g) = match task.settings.scale_factor_hz_per_g {
             Some(stated) => (task.scale.delta_f_half_span_hz / stated, 0.0),
             None => (smooth.slope(x, t), smooth.slope_sigma(x, t, task.sigma_g)),
         };
-        anchors.slopes.push(SlopeRow {
-            x,
-            t,
-            slope: (slope_g - line.slope(x, t)) / unit_g,
-            weight: weight(measured_g.hypot(SLOPE_ALLOWANCE * slope_g)),
-        });
+        if matches!(anchoring, Anchoring::Slopes | Anchoring::Both) {
+            anchors.slopes.push(SlopeRow {
+                x,
+                t,
+                slope: (slope_g - line.slope(x, t)) / unit_g,
+                weight: weight(measured_g.hypot(SLOPE_ALLOWANCE * slope_g)),
+            });
+        }
         let measured_g = smooth.value_sigma(x, t, task.sigma_g);
-        if task.settings.scale_factor_hz_per_g.is_none() {
+        if matches!(anchoring, Anchoring::Values | Anchoring::Both) && !still {
             anchors.values.push(ValueRow {
                 x,
                 t,
