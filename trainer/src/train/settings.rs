@@ -1,0 +1,110 @@
+//! What to train, and how.
+
+use super::backprop::{Backprop, Swarm};
+use crate::model::{Model, ModelEffect};
+use firmware_core::effect;
+
+/// How the weights are found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Method {
+    /// Variable projection and Levenberg–Marquardt from random starts, with the slope held to the
+    /// measured scale factor.
+    SecondOrder,
+    /// The paper's: gradient descent from the best of a firefly swarm.
+    Backprop(Backprop),
+}
+
+impl Method {
+    /// Its name on the command line and in model files.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::SecondOrder => "second-order",
+            Self::Backprop(Backprop { swarm: Swarm::Standard(_), .. }) => "fa-bp",
+            Self::Backprop(Backprop { swarm: Swarm::Improved(_), .. }) => "ifa-bp",
+        }
+    }
+}
+
+/// What to train.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrainSettings {
+    /// How.
+    pub method: Method,
+    /// Trainings from different starts; the one with the least cost is kept.
+    pub restarts: usize,
+    /// Seed of every random number.
+    pub seed: u64,
+    /// Scale factor, Hz/g, for a campaign whose reference never varies.
+    pub scale_factor_hz_per_g: Option<f64>,
+    /// Serial number of the sensor; empty fits any.
+    pub serial: String,
+    /// Physical effects beside the network; second-order method only.
+    pub effects: Vec<EffectChoice>,
+    /// What keeps the network smooth between the measurements; second-order method only.
+    pub anchoring: Anchoring,
+}
+
+/// What keeps the network smooth where the measurements leave it open.
+/// `docs/decisions/0003-anchors.md` compares them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchoring {
+    /// Nothing but the priors of the weights.
+    Nothing,
+    /// Slopes: the scale factor that the campaign measured.
+    Slopes,
+    /// Values of the smooth instrument.
+    Values,
+    /// Both; the default.
+    Both,
+}
+
+/// A physical effect to fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectChoice {
+    /// Its name.
+    pub name: String,
+    /// The campaign's channel that it follows, where not the effect's usual one.
+    pub channel: Option<String>,
+    /// Coefficients to start from, in the effect's order; `None` searches.
+    pub start: Option<Vec<f64>>,
+}
+
+impl EffectChoice {
+    /// The effect of this name, searched from scratch.
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        Self { name: name.to_owned(), channel: None, start: None }
+    }
+
+    /// The effects of a model, to be fitted anew from where they are.
+    #[must_use]
+    pub fn of(model: &Model) -> Vec<Self> {
+        let start = |effect: &ModelEffect| {
+            let about = effect::about(&effect.name)?;
+            about.parameters.iter().map(|parameter| effect.parameters.get(parameter.name).copied()).collect()
+        };
+        let choice = |effect: &ModelEffect| Self {
+            name: effect.name.clone(),
+            channel: effect.channel.clone(),
+            start: start(effect),
+        };
+        model.effects.iter().map(choice).collect()
+    }
+}
+
+impl TrainSettings {
+    /// The default method with 30 restarts, as many as the paper makes.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self {
+            method: Method::SecondOrder,
+            restarts: 30,
+            seed,
+            scale_factor_hz_per_g: None,
+            serial: String::new(),
+            effects: Vec::new(),
+            anchoring: Anchoring::Both,
+        }
+    }
+}

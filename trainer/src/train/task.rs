@@ -1,0 +1,179 @@
+//! What every method starts from, and how a method's best becomes a model.
+
+use super::baseline::Baseline;
+use super::settings::{EffectChoice, TrainSettings};
+use super::{Candidate, TrainError};
+use crate::campaign::{Campaign, Run, Split};
+use crate::fit::dataset::{Datum, InputScale, merged};
+use crate::fit::effects::Chosen;
+use crate::fit::polynomial::Polynomial;
+use crate::model::{Model, ModelDomain, ModelEffect, ModelNetwork, ModelScaling, Provenance, Units};
+use crate::noise::{Components, Mean, sample_sigma_g};
+use crate::progress::Progress;
+use firmware_core::effect;
+use protocol::Weights;
+
+/// What every method starts from.
+pub(super) struct Task<'a> {
+    pub runs: Vec<&'a Run>,
+    pub effects: Vec<Chosen>,
+    pub max_gap_us: u32,
+    pub data: Vec<Datum>,
+    pub scale: InputScale,
+    pub polynomial: Polynomial,
+    /// Noise of one sample, g.
+    pub sigma_g: f64,
+    pub settings: &'a TrainSettings,
+    pub progress: &'a dyn Progress,
+}
+
+impl<'a> Task<'a> {
+    pub fn new(
+        campaign: &'a Campaign,
+        split: &Split,
+        settings: &'a TrainSettings,
+        progress: &'a dyn Progress,
+    ) -> Result<Self, TrainError> {
+        if settings.restarts == 0 {
+            return Err(TrainError::NoRestarts);
+        }
+        let runs: Vec<(usize, &Run)> =
+            split.training.iter().filter_map(|&index| Some((index, campaign.runs.get(index)?))).collect();
+        let scale = InputScale::of(runs.iter().map(|(_, run)| *run)).ok_or(TrainError::NoTrainingRuns)?;
+        let data: Vec<Datum> = runs.iter().flat_map(|(index, run)| merged(run, *index, &scale)).collect();
+        let polynomial = Polynomial::fit(&data);
+        let baseline = Baseline { polynomial, scale };
+        let residuals: Vec<_> = runs.iter().map(|(_, run)| (*run, baseline.residuals_g(run))).collect();
+        let sigma_g = sample_sigma_g(residuals.iter().map(|(run, residuals)| (*run, residuals)));
+        let Baseline { polynomial, scale } = baseline;
+        let runs: Vec<&Run> = runs.into_iter().map(|(_, run)| run).collect();
+        Ok(Self {
+            effects: settings.effects.iter().map(|choice| choose(choice, campaign, &runs)).collect::<Result<_, _>>()?,
+            max_gap_us: max_gap_us(&runs),
+            runs,
+            data,
+            scale,
+            polynomial,
+            sigma_g: sigma_g.unwrap_or(0.0).max(LEAST_SIGMA_G),
+            settings,
+            progress,
+        })
+    }
+
+    /// Sources of scatter in the residuals of a fit of the training data.
+    pub fn noise(&self, fit_g: impl Fn(&Datum) -> f64) -> Components {
+        let mean = |datum: &Datum| Mean {
+            run: datum.run,
+            samples: datum.weight,
+            residual_g: fit_g(datum) - datum.reference_g,
+        };
+        Components::estimate(self.sigma_g, &self.data.iter().map(mean).collect::<Vec<_>>())
+    }
+
+    pub fn model(&self, campaign: &Campaign, split: &Split, best: &Candidate) -> Model {
+        let Weights { input, bias, output, output_bias } = best.weights;
+        Model {
+            format: Model::FORMAT,
+            serial: self.settings.serial.clone(),
+            provenance: self.provenance(campaign, split),
+            units: Units {
+                signal: campaign.quantity.signal_unit.clone(),
+                reference: campaign.quantity.reference_unit.clone(),
+            },
+            scaling: ModelScaling {
+                delta_f_zero_uhz: self.scale.delta_f_zero_uhz,
+                delta_f_gain_per_hz: self.scale.delta_f_half_span_hz.recip() as f32,
+                temperature_zero_uc: self.scale.temperature_zero_uc,
+                temperature_gain_per_c: self.scale.temperature_half_span_c.recip() as f32,
+                line_g: best.line_g.map(|value| value as f32),
+                output_g: best.output_g as f32,
+            },
+            domain: self.domain(),
+            network: ModelNetwork { input, bias, output, output_bias },
+            channels: self.channels(campaign),
+            effects: self.effects.iter().zip(&best.coefficients.values).map(|(e, v)| fitted(e, v, campaign)).collect(),
+        }
+    }
+
+    /// The auxiliary channels that the effects follow, each once.
+    fn channels(&self, campaign: &Campaign) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        let used = self.effects.iter().filter(|effect| effect.about.channel.is_some());
+        for name in used.filter_map(|effect| campaign.channels.get(effect.channel)) {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        names
+    }
+
+    fn provenance(&self, campaign: &Campaign, split: &Split) -> Provenance {
+        let names = |indices: &[usize]| {
+            indices.iter().filter_map(|&index| campaign.runs.get(index)).map(|run| run.name.clone()).collect()
+        };
+        Provenance {
+            made_by: concat!("tempco ", env!("CARGO_PKG_VERSION")).to_owned(),
+            campaign: campaign.sha256.iter().map(|byte| format!("{byte:02x}")).collect(),
+            method: self.settings.method.name().to_owned(),
+            seed: self.settings.seed,
+            restarts: self.settings.restarts,
+            training_runs: names(&split.training),
+            held_out_runs: names(&split.held_out),
+            training_residual: 0.0,
+        }
+    }
+
+    /// The training data's rectangle and a little more, so that noise at its edge raises no flag.
+    fn domain(&self) -> ModelDomain {
+        let half_f_uhz = (self.scale.delta_f_half_span_hz * 1e6 * (1.0 + DOMAIN_MARGIN)).ceil() as i64;
+        let half_t_uc = (self.scale.temperature_half_span_c * 1e6 * (1.0 + DOMAIN_MARGIN)).ceil() as i32;
+        let (f, t) = (self.scale.delta_f_zero_uhz, self.scale.temperature_zero_uc);
+        ModelDomain {
+            delta_f_uhz: [f - half_f_uhz, f + half_f_uhz],
+            temperature_uc: [t.saturating_sub(half_t_uc), t.saturating_add(half_t_uc)],
+            max_gap_us: self.max_gap_us,
+        }
+    }
+}
+
+/// Longer than any regular sampling of these runs, µs.
+fn max_gap_us(runs: &[&Run]) -> u32 {
+    let slowest_s = runs.iter().filter_map(|run| run.sample_interval_s()).fold(1.0, f64::max);
+    (slowest_s * GAP_INTERVALS * 1e6).min(f64::from(u32::MAX)) as u32
+}
+
+/// Finds the effect and its channel.
+fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) -> Result<Chosen, TrainError> {
+    let about = effect::about(&choice.name).ok_or_else(|| TrainError::UnknownEffect(choice.name.clone()))?;
+    let Some(usual) = about.channel else { return Ok(Chosen { about, channel: 0, origin: 0.0 }) };
+    let name = choice.channel.as_deref().unwrap_or(usual);
+    let channel = campaign
+        .channels
+        .iter()
+        .position(|channel| channel == name)
+        .ok_or_else(|| TrainError::NoChannel { effect: choice.name.clone(), channel: name.to_owned() })?;
+    let values: Vec<f64> = runs
+        .iter()
+        .flat_map(|run| &run.rows)
+        .filter_map(|row| row.sample.channels.get(channel))
+        .map(|micro| *micro as f64 * 1e-6)
+        .collect();
+    Ok(Chosen { about, channel, origin: crate::metrics::mean(&values) })
+}
+
+/// A fitted effect as the model file keeps it.
+fn fitted(effect: &Chosen, values: &[f64], campaign: &Campaign) -> ModelEffect {
+    let names = effect.about.parameters.iter().map(|parameter| parameter.name.to_owned());
+    ModelEffect {
+        name: effect.about.name.to_owned(),
+        channel: effect.about.channel.and_then(|_| campaign.channels.get(effect.channel).cloned()),
+        parameters: names.zip(values.iter().copied()).collect(),
+    }
+}
+
+/// A sample is stale after this many sampling intervals.
+const GAP_INTERVALS: f64 = 30.0;
+/// Share of the half span by which the calibrated domain exceeds the training data.
+const DOMAIN_MARGIN: f64 = 0.02;
+/// Noise is never taken to be less than this, so that noiseless data give no division by zero, g.
+const LEAST_SIGMA_G: f64 = 1e-9;
