@@ -153,14 +153,16 @@ impl<R: Real> Compensator<R> {
     /// Observes the sample, advances the memories, evaluates network and effects.
     pub fn evaluate(&mut self, sample: &Sample) -> Output<R> {
         let now = Observation::new(sample, &self.scaling);
-        let status = sample.faults | self.outside(sample) | self.terms.advance(sample);
+        let (inputs, apparent_g) = self.level(&now, &Disturbance::NONE);
+        let status = sample.faults | self.outside(sample) | self.terms.advance(sample, apparent_g);
         if self.terms.is_empty() {
-            let (inputs, level_g) = self.level(&now, &Disturbance::NONE);
-            return Output { inputs, level_g, bias_g: R::ZERO, status };
+            return Output { inputs, level_g: apparent_g, bias_g: R::ZERO, status };
         }
-        let (_, apparent_g) = self.level(&now, &Disturbance::NONE);
         let (inputs, level_g) = self.level(&now, &self.terms.disturbance(&now, apparent_g));
-        Output { inputs, level_g, bias_g: self.terms.bias_g(&now, level_g), status }
+        // What an effect adds depends on the acceleration, and the level is not that yet. A second round
+        // leaves bias · slope² of it instead of bias · slope.
+        let nearly_g = self.terms.bias_g(&now, level_g);
+        Output { inputs, level_g, bias_g: self.terms.bias_g(&now, level_g - nearly_g), status }
     }
 
     /// Network inputs and static reading once the disturbance of the resonators is taken out.

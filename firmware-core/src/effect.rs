@@ -5,11 +5,28 @@
 //! unit of the physics (what the effect *does* to the sensor); the compensator takes it out again.
 //! `docs/adding-an-effect.md` shows how to write the next one.
 
+mod aging;
+#[cfg(test)]
+mod bench;
+mod cross_axis;
+mod g_hysteresis;
+mod humidity;
+mod lock_in;
+mod misalignment;
+mod mode_crossing;
+mod pressure;
+mod reference_clock;
+mod scale_factor_aging;
 mod second_order;
+mod self_heating;
+mod stress_relaxation;
 mod supply_voltage;
 mod thermal_gradient;
 mod thermal_hysteresis;
 mod thermal_lag;
+mod third_order;
+mod turn_on;
+mod vibration_rectification;
 mod warm_up;
 
 use crate::memory::Memory;
@@ -59,6 +76,8 @@ pub enum Signal {
     Temperature,
     /// The auxiliary channel that the term names.
     Channel,
+    /// The static reading, g: as if no effect were at work.
+    Level,
 }
 
 /// What an effect sees of one instant.
@@ -91,6 +110,11 @@ impl<R: Real> Disturbance<R> {
     pub const fn of_temperature(temperature_c: R) -> Self {
         Self { temperature_c, delta_f_hz: R::ZERO }
     }
+
+    /// A frequency difference larger by this than without the effect, Hz.
+    pub const fn of_delta_f(delta_f_hz: R) -> Self {
+        Self { temperature_c: R::ZERO, delta_f_hz }
+    }
 }
 
 impl<R: Real> AddAssign for Disturbance<R> {
@@ -121,6 +145,14 @@ pub struct About {
     pub needs: &'static str,
 }
 
+impl About {
+    /// Whether an instrument can take the effect out. One that is new at every start can be known, not predicted.
+    #[must_use]
+    pub fn is_on_device(&self) -> bool {
+        find::<f32>(self.id).is_some()
+    }
+}
+
 /// One coefficient of an effect.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
@@ -147,17 +179,20 @@ pub enum Role {
     Shape,
     /// Where the effect's channel counts from. A fit can't tell it from the bias: the channel's mean is taken.
     Origin,
+    /// Where on an axis the effect sits: of either sign, searched on a linear scale.
+    Location,
 }
 
+// A module without a type is known and can't be computed: see `About::is_on_device`.
 macro_rules! registry {
-    ($($module:ident :: $effect:ident),* $(,)?) => {
+    ($($module:ident $(:: $effect:ident)?),* $(,)?) => {
         /// What a person should know of every effect, by number.
         pub const ALL: &[&About] = &[$(&$module::ABOUT),*];
 
-        /// The effect of this number.
+        /// The effect of this number, as far as an instrument can compute it.
         #[must_use]
         pub fn find<R: Real>(id: u16) -> Option<&'static dyn Effect<R>> {
-            $(if id == $module::ABOUT.id { return Some(&$module::$effect); })*
+            $($(if id == $module::ABOUT.id { return Some(&$module::$effect); })?)*
             None
         }
     };
@@ -170,6 +205,21 @@ registry! {
     thermal_hysteresis::ThermalHysteresis,
     second_order::SecondOrder,
     supply_voltage::SupplyVoltage,
+    stress_relaxation::StressRelaxation,
+    aging::Aging,
+    scale_factor_aging::ScaleFactorAging,
+    third_order::ThirdOrder,
+    cross_axis::CrossAxis,
+    misalignment::Misalignment,
+    vibration_rectification::VibrationRectification,
+    pressure::Pressure,
+    humidity::Humidity,
+    mode_crossing::ModeCrossing,
+    lock_in::LockIn,
+    turn_on,
+    g_hysteresis::GHysteresis,
+    reference_clock::ReferenceClock,
+    self_heating::SelfHeating,
 }
 
 /// The highest effect number.

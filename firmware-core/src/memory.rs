@@ -1,8 +1,9 @@
 //! What an effect remembers of the past.
 //!
 //! Both kinds of memory are driven by *increments* of a signal, and increments are taken in
-//! integers. The state is the small departure from equilibrium and not the signal itself: a low-pass
-//! of 25 °C with a time constant of hours would stall in `f32`, its departure does not.
+//! integers where the signal is one. The state is the small departure from equilibrium and not the
+//! signal itself, and it is summed without loss: a low-pass of 25 °C with a time constant of hours
+//! would stall in `f32`, its departure does not, be the samples ever so dense.
 
 use crate::real::Real;
 
@@ -27,8 +28,9 @@ pub enum Memory<R> {
 /// The present state of one memory, and whether it has forgotten its unknown beginning.
 #[derive(Clone, Copy, Debug)]
 pub struct State<R> {
-    departure: R,
-    settled_for: R,
+    departure: Sum<R>,
+    /// Time constants gone by.
+    settled_for: Sum<R>,
     settled: bool,
 }
 
@@ -37,12 +39,12 @@ const SETTLED_TAUS: f32 = 5.0;
 
 impl<R: Real> State<R> {
     /// In equilibrium, as after an infinite soak. It settles as the past becomes known.
-    pub const REST: Self = Self { departure: R::ZERO, settled_for: R::ZERO, settled: false };
+    pub const REST: Self = Self { departure: Sum::ZERO, settled_for: Sum::ZERO, settled: false };
 
     /// The departure from equilibrium, in the signal's unit.
     #[must_use]
     pub const fn departure(&self) -> R {
-        self.departure
+        self.departure.value
     }
 
     /// Whether the past seen so far determines the state.
@@ -58,6 +60,22 @@ impl<R: Real> State<R> {
             Memory::Lag { tau_s } => self.advance_lag(tau_s, increment, dt_s),
             Memory::Play { radius } => self.advance_play(radius, increment),
         }
+        if !self.departure.value.is_finite() {
+            // An impossible signal must not be remembered for ever.
+            *self = Self::REST;
+        }
+    }
+
+    /// Takes the signal's `increment` over a pause of `dt_s`, during which nobody looked. What moves a
+    /// sensor moves it and then waits, chamber and turntable alike: the change counts from the beginning.
+    pub fn pause(&mut self, memory: &Memory<R>, increment: R, dt_s: R) {
+        match memory {
+            Memory::Lag { .. } => {
+                self.departure.add(increment);
+                self.advance(memory, R::ZERO, dt_s);
+            }
+            Memory::None | Memory::Play { .. } => self.advance(memory, increment, dt_s),
+        }
     }
 
     /// Exact for a signal that runs straight from one sample to the next.
@@ -65,9 +83,10 @@ impl<R: Real> State<R> {
         if tau_s > R::ZERO {
             let k = dt_s / tau_s;
             let forgotten = -(-k).exp_m1();
-            self.departure = self.departure - self.departure * forgotten + increment * (forgotten / k);
-            self.settled_for += k;
-            self.settled = self.settled_for >= R::from_f32(SETTLED_TAUS);
+            let kept = if k > R::ZERO { forgotten / k } else { R::ONE };
+            self.departure.add(increment * kept - self.departure.value * forgotten);
+            self.settled_for.add(k);
+            self.settled = self.settled_for.value >= R::from_f32(SETTLED_TAUS);
         } else {
             *self = Self { settled: true, ..Self::REST };
         }
@@ -75,9 +94,28 @@ impl<R: Real> State<R> {
 
     fn advance_play(&mut self, radius: R, increment: R) {
         let radius = if radius > R::ZERO { radius } else { R::ZERO };
-        let wanted = self.departure + increment;
-        self.departure = wanted.between(-radius, radius);
+        let wanted = self.departure.value + increment;
+        self.departure = Sum { value: wanted.between(-radius, radius), ..Sum::ZERO };
         self.settled = self.settled || !(wanted > -radius && wanted < radius);
+    }
+}
+
+/// A sum to which steps below its last place still count (Kahan).
+#[derive(Clone, Copy, Debug)]
+struct Sum<R> {
+    value: R,
+    /// What rounding has kept from the value so far.
+    carry: R,
+}
+
+impl<R: Real> Sum<R> {
+    const ZERO: Self = Self { value: R::ZERO, carry: R::ZERO };
+
+    fn add(&mut self, step: R) {
+        let step = step + self.carry;
+        let sum = self.value + step;
+        self.carry = step - (sum - self.value);
+        self.value = sum;
     }
 }
 
@@ -86,14 +124,49 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_lag_of_days_does_not_stall_in_f32_at_a_hundred_samples_a_second() {
+        let (tau, start) = (1e6_f32, 35.0_f32);
+        let (memory, mut state) = (Memory::Lag { tau_s: tau }, State::REST);
+        state.advance(&memory, start, 0.01);
+        for _ in 0..1_000_000 {
+            state.advance(&memory, 0.0, 0.01);
+        }
+        let exact = 35.0 * libm::exp(-0.01);
+        assert!((f64::from(state.departure()) - exact).abs() < 2e-6 * 35.0, "{} for {exact}", state.departure());
+        assert!((state.settled_for.value - 0.01).abs() < 2e-8 && !state.is_settled());
+    }
+
+    #[test]
+    fn a_change_during_a_pause_counts_from_its_beginning() {
+        let (lag, play) = (Memory::Lag { tau_s: 600.0_f64 }, Memory::Play { radius: 2.0_f64 });
+        let mut state = State::REST;
+        state.pause(&lag, 20.0, 1200.0);
+        assert!((state.departure() - 20.0 * libm::exp(-2.0)).abs() < 1e-12);
+        let mut state = State::REST;
+        state.pause(&play, 20.0, 1200.0);
+        assert!((state.departure() - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_impossible_signal_is_forgotten() {
+        for memory in [Memory::Lag { tau_s: 35.0_f32 }, Memory::Lag { tau_s: f32::MAX }] {
+            let mut state = State::REST;
+            state.advance(&memory, f32::INFINITY, 1e-6);
+            assert!(state.departure().to_bits() == 0, "{memory:?}");
+            state.advance(&memory, 1.0, 1e-6);
+            assert!((state.departure() - 1.0).abs() < 1e-6, "{memory:?}");
+        }
+    }
+
+    #[test]
     fn a_lag_follows_the_analytic_ramp_response_in_f32_over_ten_hours() {
         let (tau, rate) = (6000.0_f32, 0.01_f32);
         let (memory, mut state) = (Memory::Lag { tau_s: tau }, State::REST);
         for second in 1..=36_000 {
             state.advance(&memory, rate, 1.0);
             let exact = f64::from(rate) * 6000.0 * (1.0 - libm::exp(-f64::from(second) / 6000.0));
-            // 36,000 roundings of half an ulp, not all the same way.
-            assert!((f64::from(state.departure()) - exact).abs() < 60.0 * 1e-4, "at {second} s");
+            // The increment and the share that is forgotten are rounded once each, always the same way.
+            assert!((f64::from(state.departure()) - exact).abs() < 60.0 * 1e-6, "at {second} s");
         }
         assert!(state.is_settled());
     }

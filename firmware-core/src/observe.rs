@@ -80,7 +80,12 @@ impl<R: Real> Scale<R> {
 pub struct Clock {
     max_gap_us: u64,
     last: Option<Sample>,
+    /// From the sample before the last to the last.
+    last_gap_us: u64,
 }
+
+/// So many times the interval before make an interval a pause.
+const PAUSE: u64 = 3;
 
 /// What happened since the previous sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,13 +96,15 @@ pub enum Step {
     Held,
     /// So many µs went by.
     Forward(u64),
+    /// So many µs went by, many more than between the samples before: nobody looked.
+    Paused(u64),
 }
 
 impl Clock {
     /// A clock that calls samples more than `max_gap_us` apart unrelated.
     #[must_use]
     pub const fn new(max_gap_us: u32) -> Self {
-        Self { max_gap_us: max_gap_us as u64, last: None }
+        Self { max_gap_us: max_gap_us as u64, last: None, last_gap_us: u64::MAX }
     }
 
     /// Forgets the previous sample.
@@ -107,21 +114,59 @@ impl Clock {
 
     /// Takes the next sample: the step to it, the sample before it, and what to flag.
     pub fn step(&mut self, sample: &Sample) -> (Step, Option<Sample>, Status) {
+        let last_gap_us = core::mem::replace(&mut self.last_gap_us, u64::MAX);
         let Some(last) = self.last.replace(*sample) else {
             return (Step::Anew, None, Status::empty());
         };
         let gap_us = sample.time_us.abs_diff(last.time_us);
         let forward = sample.time_us > last.time_us;
         match (forward, gap_us > self.max_gap_us) {
-            (true, false) => (Step::Forward(gap_us), Some(last), Status::empty()),
+            (true, false) => {
+                self.last_gap_us = gap_us;
+                let paused = gap_us / PAUSE > last_gap_us;
+                (if paused { Step::Paused(gap_us) } else { Step::Forward(gap_us) }, Some(last), Status::empty())
+            }
             (true, true) => (Step::Anew, Some(last), Status::STALE),
             // A sample out of order: the later of the two remains the one to measure from.
             (false, false) => {
-                self.last = Some(last);
+                (self.last, self.last_gap_us) = (Some(last), last_gap_us);
                 (Step::Held, Some(last), Status::TIME_REVERSED)
             }
             // The clock itself was set back: waiting for it to catch up would take for ever.
             (false, true) => (Step::Anew, Some(last), Status::TIME_REVERSED),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_clock_tells_samples_pauses_and_beginnings_apart() {
+        let mut clock = Clock::new(100);
+        let table = [
+            (1000, Step::Anew, Status::empty()),
+            // Nothing to compare the first interval with.
+            (1020, Step::Forward(20), Status::empty()),
+            (1021, Step::Forward(1), Status::empty()),
+            (1024, Step::Forward(3), Status::empty()),
+            (1036, Step::Paused(12), Status::empty()),
+            // A slower pace is a pause once.
+            (1048, Step::Forward(12), Status::empty()),
+            (1048, Step::Held, Status::TIME_REVERSED),
+            (1040, Step::Held, Status::TIME_REVERSED),
+            (1100, Step::Paused(52), Status::empty()),
+            (1201, Step::Anew, Status::STALE),
+            (1301, Step::Forward(100), Status::empty()),
+            (1000, Step::Anew, Status::TIME_REVERSED),
+            (1090, Step::Forward(90), Status::empty()),
+        ];
+        for (time_us, step, status) in table {
+            let (found, _, flags) = clock.step(&Sample::from_difference(time_us, 0, 0));
+            assert_eq!((found, flags), (step, status), "at {time_us} µs");
+        }
+        clock.restart();
+        assert_eq!(clock.step(&Sample::from_difference(1091, 0, 0)).0, Step::Anew);
     }
 }

@@ -16,6 +16,8 @@ use protocol::{Sample, Status};
 #[derive(Clone)]
 pub struct Terms<R: Real> {
     clock: Clock,
+    /// At the sample that the clock measures from, g.
+    last_level_g: R,
     terms: Vec<Term<R>, MAX_TERMS>,
 }
 
@@ -29,11 +31,18 @@ struct Term<R: Real> {
     measured: bool,
 }
 
+/// What memories follow, at one instant.
+#[derive(Clone, Copy)]
+struct Instant<R> {
+    sample: Sample,
+    level_g: R,
+}
+
 impl<R: Real> Terms<R> {
     /// No effects; memories start anew after a gap of more than `max_gap_us`.
     #[must_use]
     pub const fn new(max_gap_us: u32) -> Self {
-        Self { clock: Clock::new(max_gap_us), terms: Vec::new() }
+        Self { clock: Clock::new(max_gap_us), last_level_g: R::ZERO, terms: Vec::new() }
     }
 
     /// Adds the effect of number `id`, which follows entry `channel` of `channels` if it follows one.
@@ -74,11 +83,17 @@ impl<R: Real> Terms<R> {
         self.terms.iter_mut().for_each(|term| term.state = State::REST);
     }
 
-    /// Takes the next sample into the memories; returns what to flag.
-    pub fn advance(&mut self, sample: &Sample) -> Status {
+    /// Takes the next sample and its level into the memories; returns what to flag. The level is the
+    /// static reading on the device, the reference in training, g.
+    pub fn advance(&mut self, sample: &Sample, level_g: R) -> Status {
         let (step, last, mut status) = self.clock.step(sample);
+        let last = last.map(|sample| Instant { sample, level_g: self.last_level_g });
+        let now = Instant { sample: *sample, level_g };
+        if step != Step::Held {
+            self.last_level_g = level_g;
+        }
         for term in &mut self.terms {
-            term.remember(step, sample, last.as_ref());
+            term.remember(step, &now, last.as_ref());
             status |= term.flags();
         }
         status
@@ -104,13 +119,16 @@ impl<R: Real> Terms<R> {
 }
 
 impl<R: Real> Term<R> {
-    fn remember(&mut self, step: Step, sample: &Sample, last: Option<&Sample>) {
-        self.measured = self.is_measured(sample);
+    fn remember(&mut self, step: Step, now: &Instant<R>, last: Option<&Instant<R>>) {
+        self.measured = self.is_measured(&now.sample);
+        let last = last.filter(|last| self.measured && self.is_measured(&last.sample));
         match (step, last) {
             (Step::Held, _) => {}
-            (Step::Forward(gap_us), Some(last)) if self.measured && self.is_measured(last) => {
-                let dt_s = R::from_micro(i64::try_from(gap_us).unwrap_or(i64::MAX));
-                self.state.advance(&self.memory, self.increment(sample, last), dt_s);
+            (Step::Forward(gap_us), Some(last)) => {
+                self.state.advance(&self.memory, self.increment(now, last), seconds(gap_us));
+            }
+            (Step::Paused(gap_us), Some(last)) => {
+                self.state.pause(&self.memory, self.increment(now, last), seconds(gap_us));
             }
             _ => self.state = State::REST,
         }
@@ -126,11 +144,14 @@ impl<R: Real> Term<R> {
         sample.channels.get(self.channel).copied().unwrap_or(Sample::NOT_MEASURED)
     }
 
-    /// By how much the signal that this effect follows changed, differenced as integers.
-    fn increment(&self, sample: &Sample, last: &Sample) -> R {
+    /// By how much the signal that this effect follows changed; what was measured is differenced as integers.
+    fn increment(&self, now: &Instant<R>, last: &Instant<R>) -> R {
+        let temperature_uc = |instant: &Instant<R>| i64::from(instant.sample.temperature_uc);
+        let channel = |instant: &Instant<R>| self.channel_of(&instant.sample);
         match self.effect.signal() {
-            Signal::Temperature => R::from_micro(i64::from(sample.temperature_uc) - i64::from(last.temperature_uc)),
-            Signal::Channel => R::from_micro(self.channel_of(sample).saturating_sub(self.channel_of(last))),
+            Signal::Temperature => R::from_micro(temperature_uc(now) - temperature_uc(last)),
+            Signal::Channel => R::from_micro(channel(now).saturating_sub(channel(last))),
+            Signal::Level => now.level_g - last.level_g,
         }
     }
 
@@ -149,4 +170,8 @@ impl<R: Real> Term<R> {
         status.set(Status::CHANNEL_MISSING, !self.measured);
         status
     }
+}
+
+fn seconds<R: Real>(us: u64) -> R {
+    R::from_micro(i64::try_from(us).unwrap_or(i64::MAX))
 }

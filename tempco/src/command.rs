@@ -8,6 +8,8 @@ mod effects;
 mod export;
 mod inspect;
 mod remove;
+mod reproduce;
+mod reveal;
 mod simulate;
 mod train;
 mod verify;
@@ -20,6 +22,7 @@ use clap::Subcommand;
 pub enum Command {
     Demo(demo::Demo),
     Simulate(simulate::Simulate),
+    Reveal(reveal::Reveal),
     Train(train::Train),
     Compare(compare::Compare),
     Effects(effects::Effects),
@@ -28,6 +31,7 @@ pub enum Command {
     Export(export::Export),
     Inspect(inspect::Inspect),
     Verify(verify::Verify),
+    Reproduce(reproduce::Reproduce),
 }
 
 impl Command {
@@ -35,6 +39,7 @@ impl Command {
         match self {
             Self::Demo(command) => command.run(),
             Self::Simulate(command) => command.run(),
+            Self::Reveal(command) => command.run(),
             Self::Train(command) => command.run(),
             Self::Compare(command) => command.run(),
             Self::Effects(command) => command.run(),
@@ -43,6 +48,7 @@ impl Command {
             Self::Export(command) => command.run(),
             Self::Inspect(command) => command.run(),
             Self::Verify(command) => command.run(),
+            Self::Reproduce(command) => command.run(),
         }
     }
 }

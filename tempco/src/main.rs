@@ -6,6 +6,7 @@ mod calibration_region;
 mod command;
 mod data;
 mod failure;
+mod plot;
 mod progress;
 mod render;
 mod table;

@@ -3,16 +3,32 @@
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;
+use std::time::Duration;
 use trainer::progress::{Progress, RestartNews};
 
 /// A bar over something that takes a while; none when nobody watches.
 pub fn bar(length: u64, what: &str) -> ProgressBar {
-    if !std::io::stderr().is_terminal() || std::env::var_os("CI").is_some() {
+    if !watched() {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{prefix:>12} [{bar:30}] {pos}/{len} {msg}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(length).with_style(style.progress_chars("=> ")).with_prefix(what.to_owned())
+}
+
+/// Something that takes a while, nobody knows how long; nothing when nobody watches.
+pub fn spinner(what: &str) -> ProgressBar {
+    if !watched() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{prefix:>12} {spinner}").unwrap_or_else(|_| ProgressStyle::default_bar());
+    let spinner = ProgressBar::new_spinner().with_style(style).with_prefix(what.to_owned());
+    spinner.enable_steady_tick(Duration::from_millis(120));
+    spinner
+}
+
+fn watched() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("CI").is_none()
 }
 
 /// Shows the restarts of a training.

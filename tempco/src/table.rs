@@ -12,6 +12,11 @@ impl Table {
         Self { rows: vec![header.map(str::to_owned).to_vec()] }
     }
 
+    /// A table whose number of columns is only known at run time; the first row is the header.
+    pub fn of(rows: Vec<Vec<String>>) -> Self {
+        Self { rows }
+    }
+
     pub fn row<const N: usize>(&mut self, cells: [String; N]) {
         self.rows.push(cells.into());
     }

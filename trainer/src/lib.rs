@@ -25,6 +25,7 @@ pub mod model;
 pub mod noise;
 pub mod progress;
 pub mod replay;
+pub mod reproduction;
 pub mod residuals;
 pub mod sensitivity;
 pub mod train;

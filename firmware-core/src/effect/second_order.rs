@@ -37,3 +37,16 @@ impl<R: Real> Effect<R> for SecondOrder {
         k2 * moment.level_g * moment.level_g
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bench::{Bench, assert_near};
+    use super::*;
+
+    #[test]
+    fn both_ends_read_off_in_the_same_direction() {
+        let at = |level_g| Bench { level_g, ..Bench::REST }.bias_g(&SecondOrder, &[10e-6]);
+        assert_near(at(3.0), 90e-6);
+        assert_near(at(-3.0), 90e-6);
+    }
+}

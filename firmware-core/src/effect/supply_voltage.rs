@@ -37,3 +37,15 @@ impl<R: Real> Effect<R> for SupplyVoltage {
         k * (moment.channel - nominal_v)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bench::{Bench, assert_near};
+    use super::*;
+
+    #[test]
+    fn a_quarter_volt_more_is_250_ug() {
+        let bench = Bench { channel: 5.25, ..Bench::REST };
+        assert_near(bench.bias_g(&SupplyVoltage, &[1e-3, 5.0]), 250e-6);
+    }
+}

@@ -47,3 +47,18 @@ impl<R: Real> Effect<R> for ThermalGradient {
         if tau_s > R::ZERO { k * moment.departure / tau_s } else { R::ZERO }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bench::{Bench, assert_near, padded};
+    use super::*;
+
+    #[test]
+    fn one_degree_a_minute_is_100_ug() {
+        // A lag of 5 s behind 1 °C/min settles at a twelfth of a degree.
+        let coefficients = [6e-3, 5.0];
+        let bench = Bench { departure: 1.0 / 12.0, ..Bench::REST };
+        assert_near(bench.bias_g(&ThermalGradient, &coefficients), 100e-6);
+        assert_eq!(ThermalGradient.memory(&padded(&coefficients)), Memory::Lag { tau_s: 5.0 });
+    }
+}

@@ -39,3 +39,19 @@ impl<R: Real> Effect<R> for ThermalHysteresis {
         -(w * moment.departure)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bench::{Bench, assert_near, padded};
+    use super::*;
+
+    #[test]
+    fn from_below_it_reads_low_and_from_above_high() {
+        let coefficients = [10e-6, 4.0];
+        for (departure, worked_g) in [(4.0, -40e-6), (-4.0, 40e-6)] {
+            let bench = Bench { departure, ..Bench::REST };
+            assert_near(bench.bias_g(&ThermalHysteresis, &coefficients), worked_g);
+        }
+        assert_eq!(ThermalHysteresis.memory(&padded(&coefficients)), Memory::Play { radius: 4.0 });
+    }
+}

@@ -36,3 +36,16 @@ impl<R: Real> Effect<R> for ThermalLag {
         Disturbance::of_temperature(-moment.departure)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bench::{Bench, assert_near, padded};
+    use super::*;
+
+    #[test]
+    fn the_resonators_are_cooler_while_the_thermometer_rises() {
+        let bench = Bench { departure: 0.5, ..Bench::REST };
+        assert_near(bench.disturbance(&ThermalLag, &[35.0]).temperature_c, -0.5);
+        assert_eq!(ThermalLag.memory(&padded(&[35.0])), Memory::Lag { tau_s: 35.0 });
+    }
+}

@@ -33,3 +33,16 @@ impl<R: Real> Effect<R> for WarmUp {
         if tau_s > R::ZERO { amplitude_g * (-(moment.now.power_on_s / tau_s)).exp() } else { R::ZERO }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bench::{Bench, assert_near};
+    use super::*;
+
+    #[test]
+    fn it_settles_by_a_factor_e_in_ten_minutes() {
+        for (power_on_s, worked_g) in [(0.0, 140e-6), (600.0, 51.503_122e-6)] {
+            assert_near(Bench::power_on_s(power_on_s).bias_g(&WarmUp, &[140e-6, 600.0]), worked_g);
+        }
+    }
+}

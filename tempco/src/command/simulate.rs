@@ -1,5 +1,7 @@
 //! `tempco simulate SCENARIO -o campaign.csv`
 
+mod blind;
+
 use crate::failure::{Answer, Failure};
 use crate::progress::bar;
 use clap::Args;
@@ -13,7 +15,9 @@ use std::path::{Path, PathBuf};
 
 /// Measures a campaign on the physics twin: a laboratory for those who have none.
 #[derive(Args)]
-#[command(after_help = "Example:  tempco simulate clean --seed 7 -o campaign.csv")]
+#[command(
+    after_help = "Example:  tempco simulate clean --seed 7 -o campaign.csv\n          tempco simulate rich --blind --seed 7 -o campaign.csv"
+)]
 pub struct Simulate {
     /// Built-in scenario, or a scenario file; without it the built-in ones are listed
     scenario: Option<String>,
@@ -29,6 +33,9 @@ pub struct Simulate {
     /// Prints the scenario's text instead of carrying it out: a start for one's own
     #[arg(long)]
     print: bool,
+
+    #[command(flatten)]
+    blind: blind::Blind,
 }
 
 impl Simulate {
@@ -40,6 +47,10 @@ impl Simulate {
         let scenario = scenario(name)?;
         if self.print {
             anstream::println!("{}", scenario.to_toml());
+            return Ok(Answer::Yes);
+        }
+        if self.blind.blind {
+            anstream::println!("{}", self.blind.measure(&scenario, self.seed, &self.output)?);
             return Ok(Answer::Yes);
         }
         let recording = simulate(&scenario, self.seed)?;

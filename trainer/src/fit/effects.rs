@@ -40,7 +40,7 @@ impl Coefficients {
         for (effect, values) in effects.iter().zip(&self.values) {
             for (about, value) in effect.about.parameters.iter().zip(values) {
                 match about.role {
-                    Role::Amplitude => parameters.push(*value),
+                    Role::Amplitude | Role::Location => parameters.push(*value),
                     Role::Shape => parameters.push(value.ln()),
                     Role::Origin => {}
                 }
@@ -55,7 +55,7 @@ impl Coefficients {
         let mut next = parameters.iter().copied();
         let mut value = |effect: &Chosen, about: &firmware_core::effect::Parameter| {
             let free = match about.role {
-                Role::Amplitude => next.next().unwrap_or_default(),
+                Role::Amplitude | Role::Location => next.next().unwrap_or_default(),
                 Role::Shape => next.next().unwrap_or_default().exp(),
                 Role::Origin => return effect.origin,
             };
@@ -82,7 +82,7 @@ fn deeds(run: &Run, effects: &[Chosen], coefficients: &Coefficients, max_gap_us:
     }
     let deed = |row: &crate::campaign::Row| {
         let now = Observation::<f64>::new(&row.sample, &FROM_ZERO);
-        terms.advance(&row.sample);
+        terms.advance(&row.sample, row.reference_g);
         let disturbance = terms.disturbance(&now, row.reference_g);
         Deed {
             temperature_c: disturbance.temperature_c,

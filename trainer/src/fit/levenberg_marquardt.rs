@@ -234,8 +234,6 @@ mod tests {
         unit: f64,
     }
 
-    const ROSENBROCK: Rosenbrock = Rosenbrock { unit: 1.0 };
-
     impl Problem for Rosenbrock {
         fn parameters(&self) -> usize {
             2
@@ -259,7 +257,7 @@ mod tests {
 
     #[test]
     fn it_walks_through_rosenbrocks_valley() {
-        let minimum = minimise(&mut ROSENBROCK, &[-1.2, 1.0], &LIMITS, |_, _| ControlFlow::Continue(()));
+        let minimum = minimise(&mut Rosenbrock { unit: 1.0 }, &[-1.2, 1.0], &LIMITS, |_, _| ControlFlow::Continue(()));
         assert!((minimum.point[0] - 1.0).abs() < 1e-12 && (minimum.point[1] - 1.0).abs() < 1e-12, "{minimum:?}");
         assert!(minimum.iterations < 60, "{minimum:?}");
     }
@@ -282,11 +280,11 @@ mod tests {
     #[test]
     fn it_stops_when_told_to_and_keeps_what_it_had() {
         let mut seen = 0;
-        let minimum = minimise(&mut ROSENBROCK, &[-1.2, 1.0], &LIMITS, |_, _| {
+        let minimum = minimise(&mut Rosenbrock { unit: 1.0 }, &[-1.2, 1.0], &LIMITS, |_, _| {
             seen += 1;
             if seen == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         assert_eq!(minimum.termination, Termination::Cancelled);
-        assert!(minimum.cost < ROSENBROCK.cost(&[-1.2, 1.0]));
+        assert!(minimum.cost < Rosenbrock { unit: 1.0 }.cost(&[-1.2, 1.0]));
     }
 }

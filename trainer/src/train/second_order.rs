@@ -89,6 +89,7 @@ fn effect_starts(task: &Task) -> Vec<Vec<f64>> {
                     Role::Amplitude => FIRST_AMPLITUDE,
                     Role::Shape => about.low * (about.high / about.low).powf(part),
                     Role::Origin => effect.origin,
+                    Role::Location => about.low + (about.high - about.low) * part,
                 };
                 effect.about.parameters.iter().map(first).collect()
             })

@@ -1,0 +1,63 @@
+//! The paper's claims with what the seeds say, in words.
+
+use std::fmt::Write;
+use trainer::reproduction::claim::{CLAIMS, Claim, Measure, Outcome, Verdict};
+use trainer::reproduction::trial::{Share, Trial};
+
+/// All claims.
+pub fn text(trials: &[Trial]) -> String {
+    let mut text = String::from("\nWhat the paper says of the two, counted on these seeds\n");
+    for claim in CLAIMS.iter().filter(|claim| !claim.source.is_empty()) {
+        text += &one(claim, trials);
+    }
+    text += "\nWhat it leaves out\n";
+    for claim in CLAIMS.iter().filter(|claim| claim.source.is_empty()) {
+        text += &one(claim, trials);
+    }
+    text
+}
+
+fn one(claim: &Claim, trials: &[Trial]) -> String {
+    let outcomes = claim.outcomes(trials);
+    let source = if claim.source.is_empty() { String::new() } else { format!("{}: ", claim.source) };
+    let mut text = format!("  {source}{}\n", claim.statement);
+    for function in ["Schaffer", "Rastrigin"] {
+        let here: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.field.function.name == function).collect();
+        if !here.is_empty() {
+            let _ = writeln!(text, "    {function:9}  {}", verdicts(&claim.measure, &here));
+        }
+    }
+    text
+}
+
+/// The domains grouped by verdict: "holds on |x| ≤ 1 (99.8 %); fails on |x| ≤ 2 (59 %), 5 (1 %)".
+fn verdicts(measure: &Measure, outcomes: &[&Outcome]) -> String {
+    let group = |verdict: Verdict| {
+        let domains: Vec<String> =
+            outcomes.iter().filter(|outcome| outcome.verdict == verdict).map(|outcome| domain(outcome)).collect();
+        (!domains.is_empty()).then(|| format!("{} |x| ≤ {}", words(measure, verdict), domains.join(", ")))
+    };
+    let groups: Vec<String> = [Verdict::Holds, Verdict::Open, Verdict::Fails].into_iter().filter_map(group).collect();
+    groups.join("; ")
+}
+
+const fn words(measure: &Measure, verdict: Verdict) -> &'static str {
+    match (measure, verdict) {
+        (Measure::FindsMore(..), Verdict::Fails) => "the opposite holds for",
+        (Measure::FindsMore(..), Verdict::Open) => "no difference to be seen for",
+        (_, Verdict::Holds) => "holds for",
+        (_, Verdict::Open) => "as often as not for",
+        (_, Verdict::Fails) => "does not hold for",
+    }
+}
+
+fn domain(outcome: &Outcome) -> String {
+    let against = outcome.against.map(|share| format!(" against {}", percent(share))).unwrap_or_default();
+    format!("{} ({}{against} %)", outcome.field.half_width, percent(outcome.share))
+}
+
+/// In per cent, with a decimal where it matters.
+pub fn percent(share: Share) -> String {
+    let value = share.percent();
+    if value > 0.0 && value < 9.95 { format!("{value:.1}") } else { format!("{value:.0}") }
+}

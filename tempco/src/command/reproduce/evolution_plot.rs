@@ -1,0 +1,111 @@
+//! Figures 3 and 4: how best and mean fall with the generations.
+
+use super::claims::percent;
+use crate::failure::Failure;
+use crate::plot::{Area, BLUE, Entry, VERMILION, axis, heading, label, mesh, picture};
+use plotters::prelude::*;
+use trainer::fit::firefly::Generation;
+use trainer::reproduction::contender::{Contender, Field};
+use trainer::reproduction::evolution::{Evolution, Quartiles};
+use trainer::reproduction::trial::Trial;
+
+type DrawError = DrawingAreaErrorKind<std::io::Error>;
+
+const SIZE: (u32, u32) = (1400, 760);
+const BEST: RGBColor = BLUE;
+const MEAN: RGBColor = VERMILION;
+
+/// FA above, IFA below, as printed; one column a domain, with a common scale.
+pub fn evolution(function: &str, trials: &[Trial]) -> Result<String, Failure> {
+    let row = |contender: Contender| -> Vec<&Trial> {
+        let here = |trial: &&Trial| trial.contender == contender && trial.field.function.name == function;
+        trials.iter().filter(here).collect()
+    };
+    let rows = [row(Contender::FaPrinted), row(Contender::IfaPrinted)];
+    let seeds = rows[0].first().map_or(0, |trial| trial.ends.len());
+    let title =
+        format!("{function}'s function, {seeds} seeds: evolution of the FA (above) and the IFA (below) as printed");
+    let legend = [
+        Entry::line("best firefly, median seed", BEST),
+        Entry::band("middle half of all seeds", BEST),
+        Entry::line("mean of the swarm, median seed", MEAN),
+        Entry::band("middle half of all seeds", MEAN),
+    ];
+    picture(SIZE, &title, &legend, |area| {
+        let panels = area.split_evenly((2, rows[0].len().max(1)));
+        for (column, pair) in rows[0].iter().zip(&rows[1]).enumerate() {
+            let range = range(&[pair.0, pair.1]);
+            for (row, trial) in [pair.0, pair.1].into_iter().enumerate() {
+                panel(&panels[row * rows[0].len() + column], trial, range, column == 0, row == 1)?;
+            }
+        }
+        Ok::<(), DrawError>(())
+    })
+}
+
+/// From a little below the global minimum to where the bands begin.
+fn range(trials: &[&Trial]) -> (f64, f64) {
+    let minimum = trials.first().map_or(0.0, |trial| trial.field.function.minimum);
+    let tops =
+        trials.iter().filter_map(|trial| trial.evolution.as_ref()?.mean.iter().map(|q| q.upper).reduce(f64::max));
+    let top = tops.fold(minimum + f64::EPSILON, f64::max);
+    (minimum - 0.04 * (top - minimum), top + 0.04 * (top - minimum))
+}
+
+fn panel(area: &Area, trial: &Trial, (low, high): (f64, f64), leftmost: bool, lowest: bool) -> Result<(), DrawError> {
+    let Some(evolution) = &trial.evolution else { return Ok(()) };
+    let last = evolution.best.len().saturating_sub(1);
+    let mut chart = ChartBuilder::on(area)
+        .margin_left(8)
+        .margin_right(14)
+        .margin_top(6)
+        .caption(caption(trial), heading())
+        .x_label_area_size(if lowest { 42 } else { 24 })
+        .y_label_area_size(if leftmost { 62 } else { 46 })
+        .build_cartesian_2d(0..last, low..high)?;
+    let mut grid = chart.configure_mesh();
+    grid.disable_x_mesh().x_labels(6).y_labels(6).light_line_style(WHITE).bold_line_style(mesh());
+    grid.axis_style(axis()).label_style(label()).axis_desc_style(label());
+    let decimals = if high - low < 2.0 { 1 } else { 0 };
+    let number = move |value: &f64| format!("{value:.decimals$}").replace('-', "−");
+    grid.y_label_formatter(&number);
+    if leftmost {
+        grid.y_desc("cost");
+    }
+    if lowest {
+        grid.x_desc("generation");
+    }
+    grid.draw()?;
+    let Evolution { best, mean, typical, .. } = evolution;
+    for (quartiles, colour) in [(mean, MEAN), (best, BEST)] {
+        chart.draw_series([Polygon::new(band(quartiles, high), colour.mix(0.22))])?;
+    }
+    for (value, colour) in [(mean_of as fn(&Generation) -> f64, MEAN), (best_of, BEST)] {
+        // A single seed may leave the picture; the bands do not.
+        let line = typical.iter().enumerate().map(|(n, generation)| (n, value(generation).min(high)));
+        chart.draw_series(LineSeries::new(line, colour.stroke_width(2)))?;
+    }
+    Ok(())
+}
+
+fn caption(trial: &Trial) -> String {
+    let Field { function, half_width } = trial.field;
+    let name = if trial.contender == Contender::FaPrinted { "FA" } else { "IFA" };
+    let minimum = format!("{}", function.minimum).replace('-', "−");
+    format!("{name}, |x| ≤ {half_width}: {} % of seeds find {minimum}", percent(trial.found()))
+}
+
+fn best_of(generation: &Generation) -> f64 {
+    generation.best
+}
+
+fn mean_of(generation: &Generation) -> f64 {
+    generation.mean
+}
+
+/// The outline of a quartile band: there along the lower edge, back along the upper.
+fn band(quartiles: &[Quartiles], high: f64) -> Vec<(usize, f64)> {
+    let lower = quartiles.iter().enumerate().map(|(n, q)| (n, q.lower.min(high)));
+    let upper = quartiles.iter().enumerate().map(|(n, q)| (n, q.upper.min(high)));
+    lower.chain(upper.rev()).collect()
+}

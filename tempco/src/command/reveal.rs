@@ -1,0 +1,134 @@
+//! `tempco reveal campaign.sealed`
+
+use crate::failure::{Answer, Failure};
+use crate::table::Table;
+use clap::Args;
+use firmware_sim::seal::{CampaignDigest, HiddenEffect, SealError, SealedTruth, open};
+use std::path::{Path, PathBuf};
+
+/// Opens the envelope of a blind campaign: which effects it hides, and how much each of them matters.
+#[derive(Args)]
+#[command(after_help = "Example:  tempco reveal campaign.sealed")]
+pub struct Reveal {
+    /// Sealed truth, as `tempco simulate --blind` wrote it
+    sealed: PathBuf,
+
+    /// The campaign it belongs to [default: the file of the same name with the ending .csv]
+    campaign: Option<PathBuf>,
+
+    /// Prints one JSON object instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+impl Reveal {
+    pub fn run(&self) -> Result<Answer, Failure> {
+        let campaign = self.campaign.clone().unwrap_or_else(|| self.sealed.with_extension("csv"));
+        let text = std::fs::read_to_string(&self.sealed).map_err(|error| Failure::io(&self.sealed, &error))?;
+        let digest = CampaignDigest::of([std::fs::read(&campaign).map_err(|error| {
+            Failure::io(&campaign, &error).help(format_args!(
+                "name the campaign that the truth belongs to:  tempco reveal {} CAMPAIGN",
+                self.sealed.display()
+            ))
+        })?]);
+        let truth = open(&text, &digest).map_err(|error| refused(&self.sealed, &campaign, &error))?;
+        if self.json {
+            anstream::println!("{:#}", json(&truth));
+        } else {
+            anstream::println!("{}", words(&truth, &campaign));
+        }
+        Ok(Answer::Yes)
+    }
+}
+
+fn refused(sealed: &Path, campaign: &Path, error: &SealError) -> Failure {
+    let failure = Failure::new(format_args!("{}: {error}", sealed.display()));
+    match error {
+        SealError::OtherCampaign { .. } => failure.help(format_args!(
+            "{} is another campaign, or was changed since; name the right one:  tempco reveal {} CAMPAIGN",
+            campaign.display(),
+            sealed.display()
+        )),
+        SealError::NotSealed { .. } => failure.help("`tempco simulate --blind` writes one beside its campaign"),
+        SealError::OtherVersion { .. } => failure.help("open it with the version that sealed it"),
+        _ => failure.help("the same scenario and seed with `tempco simulate --blind` give campaign and truth again"),
+    }
+}
+
+fn words(truth: &SealedTruth, campaign: &Path) -> String {
+    let SealedTruth { blind_seed, noise_floor_ug, hidden, scenario } = truth;
+    let name = scenario.name.trim_end_matches("-blind");
+    let what = match hidden.len() {
+        0 => "hides nothing".to_owned(),
+        1 => "hides 1 effect".to_owned(),
+        several => format!("hides {several} effects"),
+    };
+    let mut text = format!("{} (scenario {name}, seed {blind_seed}) {what}.\n", campaign.display());
+    if !hidden.is_empty() {
+        text += &format!("\n{}", table(truth));
+        text += &format!(
+            "  share = scatter that the effect alone leaves behind a perfect static compensation of this campaign; \
+             noise {noise_floor_ug:.2} µg\n"
+        );
+    }
+    let is_hidden = |name: &&&str| hidden.iter().any(|effect| effect.name == **name);
+    let open: Vec<&str> = scenario.effects.active().iter().filter(|name| !is_hidden(name)).copied().collect();
+    if !open.is_empty() {
+        text += &format!("The scenario shows openly: {}.\n", open.join(", "));
+    }
+    text.trim_end().to_owned()
+}
+
+fn table(truth: &SealedTruth) -> Table {
+    let mut table = Table::new(["effect", "share µg", "times the noise", "parameters"]);
+    for hidden in &truth.hidden {
+        let parameters: Vec<String> =
+            parameters(truth, hidden).iter().map(|(name, value)| format!("{name} = {}", short(value))).collect();
+        table.row([
+            hidden.name.clone(),
+            format!("{:.1}", hidden.influence_ug),
+            format!("{:.2}", hidden.times_noise),
+            parameters.join(", "),
+        ]);
+    }
+    table
+}
+
+/// The parameters of a hidden effect, as a scenario writes them.
+fn parameters(truth: &SealedTruth, hidden: &HiddenEffect) -> toml::Table {
+    let all = toml::Table::try_from(&truth.scenario.effects).unwrap_or_default();
+    all.get(&hidden.name).and_then(toml::Value::as_table).cloned().unwrap_or_default()
+}
+
+fn short(value: &toml::Value) -> String {
+    match value.as_float() {
+        Some(number) if number.abs() >= 1e-3 && number.abs() < 1e6 => {
+            let decimals = (3 - number.abs().log10().floor() as i32).clamp(0, 6) as usize;
+            let text = format!("{number:.decimals$}");
+            if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+        }
+        Some(number) if number != 0.0 => format!("{number:.3e}"),
+        _ => value.to_string(),
+    }
+}
+
+fn json(truth: &SealedTruth) -> serde_json::Value {
+    let hidden: Vec<_> = truth
+        .hidden
+        .iter()
+        .map(|hidden| {
+            serde_json::json!({
+                "effect": hidden.name,
+                "share_ug": hidden.influence_ug,
+                "times_noise": hidden.times_noise,
+                "parameters": parameters(truth, hidden),
+            })
+        })
+        .collect();
+    serde_json::json!({
+        "scenario": truth.scenario.name.trim_end_matches("-blind"),
+        "seed": truth.blind_seed,
+        "noise_floor_ug": truth.noise_floor_ug,
+        "hidden": hidden,
+    })
+}
