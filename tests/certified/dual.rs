@@ -87,6 +87,8 @@ impl<T: Into<Dual>> Sub<T> for Dual {
 impl<T: Into<Dual>> Mul<T> for Dual {
     type Output = Self;
 
+    // The rules of differentiation mix the operators.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     fn mul(self, other: T) -> Self {
         let other = other.into();
         let slopes = std::array::from_fn(|i| self.value * other.slopes[i] + self.slopes[i] * other.value);
@@ -97,6 +99,8 @@ impl<T: Into<Dual>> Mul<T> for Dual {
 impl<T: Into<Dual>> Div<T> for Dual {
     type Output = Self;
 
+    // The rules of differentiation mix the operators.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     fn div(self, other: T) -> Self {
         let other = other.into();
         let value = self.value / other.value;

@@ -6,7 +6,7 @@
 use crate::campaign::{Campaign, Row, Run, Split};
 use crate::noise::rms;
 use crate::progress::Quiet;
-use crate::residuals::{ResidualError, residuals};
+use crate::residuals::{ResidualError, arranged, residuals};
 use crate::train::{TrainError, TrainSettings, train};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -132,8 +132,10 @@ fn without(
     let outside = campaign.runs.iter().map(|run| part(run, false)).collect();
     let outside = Campaign::new(outside, campaign.channels.clone(), campaign.quantity.clone());
     let model = train(&outside, split, settings, &Quiet)?.model;
-    let inside: Vec<Run> = campaign.runs.iter().map(|run| part(run, true)).filter(|run| !run.rows.is_empty()).collect();
-    let residuals = residuals(&model, &inside)?;
+    let inside = campaign.runs.iter().map(|run| part(run, true)).filter(|run| !run.rows.is_empty()).collect();
+    let inside = Campaign::new(inside, campaign.channels.clone(), campaign.quantity.clone());
+    let inside = arranged(&model, &inside).map_err(ResidualError::from)?;
+    let residuals = residuals(&model, &inside.runs)?;
     let all: Vec<f64> = residuals.runs.into_iter().flat_map(|run| run.residuals_g).collect();
     Ok(LeftOut { at: f64::midpoint(cluster.low, cluster.high), samples: all.len(), residual_ug: rms(&all) * 1e6 })
 }

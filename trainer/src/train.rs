@@ -17,7 +17,7 @@ use crate::fit::gradient_descent::DescentError;
 use crate::fit::polynomial::Polynomial;
 use crate::model::Model;
 use crate::progress::Progress;
-use crate::residuals::{Residuals, residuals};
+use crate::residuals::{Residuals, arranged, residuals};
 use protocol::Weights;
 use task::Task;
 use thiserror::Error;
@@ -68,6 +68,9 @@ pub enum TrainError {
     /// No effect has this name.
     #[error("there is no effect named `{0}`; `tempco effects` lists them")]
     UnknownEffect(String),
+    /// The effect is real, but no device can foresee it.
+    #[error("effect `{0}` can't be compensated: no device can foresee it (`tempco effects {0}` says why)")]
+    NotOnDevice(String),
     /// The campaign lacks the effect's channel.
     #[error("effect `{effect}` follows the channel `{channel}`, which the campaign doesn't have")]
     NoChannel {
@@ -137,12 +140,18 @@ pub fn train(
     let none = if progress.cancelled() { TrainError::Cancelled } else { TrainError::NoFiniteWeights };
     let best = best.filter(|candidate| candidate.cost.is_finite()).ok_or(none)?;
     let mut model = task.model(campaign, split, &best);
-    let training = split.training.iter().filter_map(|&index| campaign.runs.get(index));
-    if let Ok(Residuals { runs, .. }) = residuals(&model, training) {
-        // What the device computes, not what the optimiser believed.
-        model.provenance.training_residual = crate::noise::rms(runs.iter().flat_map(|run| &run.residuals_g));
+    if let Some(residual) = training_residual(&model, campaign, split) {
+        model.provenance.training_residual = residual;
     }
     let raw = Baseline { polynomial: Polynomial::fit_degrees(&task.data, 1, 0), scale: task.scale };
     let baseline = Baseline { polynomial: task.polynomial, scale: task.scale };
     Ok(Trained { model, restarts, baseline, raw })
+}
+
+/// RMS on the training runs of what the device computes, not of what the optimiser believed.
+fn training_residual(model: &Model, campaign: &Campaign, split: &Split) -> Option<f64> {
+    let campaign = arranged(model, campaign).ok()?;
+    let training = split.training.iter().filter_map(|&index| campaign.runs.get(index));
+    let Residuals { runs } = residuals(model, training).ok()?;
+    Some(crate::noise::rms(runs.iter().flat_map(|run| &run.residuals_g)))
 }

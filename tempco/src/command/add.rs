@@ -41,6 +41,6 @@ impl Add {
             return Err(Failure::new(format_args!("the model has the effect `{}` already", self.effect)));
         }
         effects.push(EffectChoice { channel: self.channel.clone(), ..EffectChoice::named(&self.effect) });
-        ladder(&change, effects, &self.output, self.json)
+        ladder(&change, &effects, &self.output, self.json)
     }
 }

@@ -43,7 +43,7 @@ impl Change {
 }
 
 /// Trains from the bare network up, one effect more on each rung, and writes the last model.
-pub fn ladder(change: &Change, effects: Vec<EffectChoice>, output: &Path, json: bool) -> Result<Answer, Failure> {
+pub fn ladder(change: &Change, effects: &[EffectChoice], output: &Path, json: bool) -> Result<Answer, Failure> {
     let mut rungs = Vec::new();
     let mut top = None;
     for count in 0..=effects.len() {

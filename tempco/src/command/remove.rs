@@ -42,6 +42,6 @@ impl Remove {
                 if names.is_empty() { "none".to_owned() } else { names.join(", ") }
             )));
         }
-        ladder(&change, effects, &self.output, self.json)
+        ladder(&change, &effects, &self.output, self.json)
     }
 }

@@ -145,6 +145,9 @@ fn max_gap_us(runs: &[&Run]) -> u32 {
 /// Finds the effect and its channel.
 fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) -> Result<Chosen, TrainError> {
     let about = effect::about(&choice.name).ok_or_else(|| TrainError::UnknownEffect(choice.name.clone()))?;
+    if !about.is_on_device() {
+        return Err(TrainError::NotOnDevice(choice.name.clone()));
+    }
     let Some(usual) = about.channel else { return Ok(Chosen { about, channel: 0, origin: 0.0 }) };
     let name = choice.channel.as_deref().unwrap_or(usual);
     let channel = campaign

@@ -8,7 +8,7 @@ use trainer::reproduction::claim::{CLAIMS, Claim, Outcome, Verdict};
 use trainer::reproduction::judgement::Judgement;
 use trainer::reproduction::paper::ROWS;
 use trainer::reproduction::shortfall::Shortfall;
-use trainer::reproduction::trial::Trial;
+use trainer::reproduction::trial::{Share, Trial};
 
 /// Everything.
 pub fn json(command: &Reproduce, trials: &[Trial], judged: &[Judged], files: &[PathBuf]) -> Value {
@@ -48,7 +48,7 @@ fn claim(claim: &Claim, trials: &[Trial]) -> Value {
                 Verdict::Open => "open",
             },
             "percent": outcome.share.percent(),
-            "against_percent": outcome.against.map(|share| share.percent()),
+            "against_percent": outcome.against.map(Share::percent),
         })
     };
     let outcomes: Vec<Value> = claim.outcomes(trials).iter().map(outcome).collect();
