@@ -88,5 +88,11 @@ def predictor(weights):
     return lambda x: Network(x).output(weights)
 
 
-def random_start(random):
-    return random.normal(0.0, 1.0, WEIGHTS)
+def random_start(random, problem):
+    """As tempco starts: hidden units are steepest within the domain, and output weights fit as well as they can."""
+    w1, w2 = random.uniform(-2.5, 2.5, (2, HIDDEN))
+    x1, x2 = random.uniform(-1.0, 1.0, (2, HIDDEN))
+    weights = np.concatenate([w1, w2, -(w1 * x1 + w2 * x2), np.zeros(HIDDEN + 1)])
+    columns = np.column_stack([Network(problem.x).hidden(weights), np.ones(len(problem.x))])
+    weights[3 * HIDDEN :] = np.linalg.lstsq(columns, problem.y_g)[0]
+    return weights
