@@ -68,14 +68,33 @@ impl Coefficients {
 
 /// What the effects do at one sample.
 #[derive(Clone, Copy, Debug, Default)]
-struct Deed {
-    temperature_c: f64,
-    delta_f_hz: f64,
-    bias_g: f64,
+pub(crate) struct Deed {
+    /// Resonators minus thermometer, °C.
+    pub temperature_c: f64,
+    /// Frequency difference with the effects minus without, Hz.
+    pub delta_f_hz: f64,
+    /// Added to the output, g.
+    pub bias_g: f64,
+}
+
+impl Deed {
+    /// Both.
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        Self {
+            temperature_c: self.temperature_c + other.temperature_c,
+            delta_f_hz: self.delta_f_hz + other.delta_f_hz,
+            bias_g: self.bias_g + other.bias_g,
+        }
+    }
 }
 
 /// Runs the effects over a run, sample by sample; `None` if the core refuses the coefficients.
-fn deeds(run: &Run, effects: &[Chosen], coefficients: &Coefficients, max_gap_us: u32) -> Option<Vec<Deed>> {
+pub(crate) fn deeds(
+    run: &Run,
+    effects: &[Chosen],
+    coefficients: &Coefficients,
+    max_gap_us: u32,
+) -> Option<Vec<Deed>> {
     let mut terms = Terms::<f64>::new(max_gap_us);
     for (effect, values) in effects.iter().zip(&coefficients.values) {
         terms.push(effect.about.id, effect.channel, usize::MAX, values.iter().copied()).ok()?;
@@ -194,7 +213,7 @@ fn weigh(run: usize, cell: &Still, noise: &Components) -> ValueRow {
     ValueRow { x: cell.x, t: cell.t, y: 0.0, weight: noise.weight(run, samples), samples }
 }
 
-fn mean_deed(deeds: &[Deed]) -> Deed {
+pub(crate) fn mean_deed(deeds: &[Deed]) -> Deed {
     let count = deeds.len() as f64;
     deeds.iter().fold(Deed::default(), |sum, deed| Deed {
         temperature_c: sum.temperature_c + deed.temperature_c / count,
