@@ -1,7 +1,8 @@
 //! A compensation model: a text file that a person can diff.
 
+use crate::expression::{Expression, ExpressionError};
 use firmware_core::{Compensator, LoadError, Network, effect};
-use protocol::limits::{HIDDEN, MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_PARAMETERS, MAX_TERMS};
+use protocol::limits::{HIDDEN, MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_PARAMETERS, MAX_PROGRAM, MAX_TERMS};
 use protocol::{Blob, Domain, Scaling, Term, Timing, Weights};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -121,6 +122,9 @@ pub struct ModelEffect {
     /// The auxiliary channel that it follows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub channel: Option<String>,
+    /// What an effect of the user's own depends on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expression: Option<String>,
     /// Coefficients by name.
     pub parameters: BTreeMap<String, f64>,
 }
@@ -181,6 +185,17 @@ pub enum DeviceLimit {
         /// The effect.
         effect: String,
     },
+    /// An effect of the user's own doesn't say what it depends on, or another one does.
+    #[error("effect `{effect}` {wrong}")]
+    Expression {
+        /// The effect.
+        effect: String,
+        /// What is wrong.
+        wrong: &'static str,
+    },
+    /// An expression is wrong for the model's channels.
+    #[error(transparent)]
+    Text(#[from] ExpressionError),
     /// Too many of something.
     #[error("{what}: at most {most}")]
     TooMany {
@@ -321,6 +336,12 @@ impl ModelDomain {
 }
 
 impl ModelEffect {
+    /// What a person calls it: its name, or the expression that it is.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        self.expression.as_deref().unwrap_or(&self.name)
+    }
+
     fn to_term(&self, channels: &[String]) -> Result<Term, DeviceLimit> {
         let about = effect::about(&self.name).ok_or_else(|| DeviceLimit::UnknownEffect(self.name.clone()))?;
         let mut parameters: heapless::Vec<f32, MAX_PARAMETERS> = heapless::Vec::new();
@@ -339,7 +360,22 @@ impl ModelEffect {
                 .ok_or_else(|| DeviceLimit::Channel { effect: self.name.clone() })?,
             _ => return Err(DeviceLimit::Channel { effect: self.name.clone() }),
         };
-        Ok(Term { effect: about.id, channel: u8::try_from(channel).unwrap_or(u8::MAX), parameters })
+        let channel = u8::try_from(channel).unwrap_or(u8::MAX);
+        Ok(Term { effect: about.id, channel, parameters, program: self.program(about, channels)? })
+    }
+
+    fn program(
+        &self,
+        about: &effect::About,
+        channels: &[String],
+    ) -> Result<heapless::Vec<u8, MAX_PROGRAM>, DeviceLimit> {
+        let wrong = |wrong| DeviceLimit::Expression { effect: self.name.clone(), wrong };
+        match (&self.expression, about.takes_program()) {
+            (Some(text), true) => Ok(Expression::parse(text, channels)?.code().clone()),
+            (None, false) => Ok(heapless::Vec::new()),
+            (None, true) => Err(wrong("needs an expression")),
+            (Some(_), false) => Err(wrong("takes no expression")),
+        }
     }
 
     fn wrong_coefficients(&self, about: &effect::About) -> DeviceLimit {

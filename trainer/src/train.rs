@@ -11,6 +11,7 @@ pub use baseline::Baseline;
 pub use settings::{Anchoring, EffectChoice, Method, TrainSettings};
 
 use crate::campaign::{Campaign, Run, Split};
+use crate::expression::ExpressionError;
 use crate::fit::effects::Coefficients;
 use crate::fit::firefly::FireflyError;
 use crate::fit::gradient_descent::DescentError;
@@ -79,6 +80,15 @@ pub enum TrainError {
         /// Its channel.
         channel: String,
     },
+    /// An effect of the user's own doesn't say what it depends on.
+    #[error("effect `expression` needs to be told what it depends on: --expression \"supply_v * temperature_rate\"")]
+    NoExpression,
+    /// It does, and that is wrong.
+    #[error(transparent)]
+    Expression(#[from] ExpressionError),
+    /// What it depends on doesn't vary.
+    #[error("expression `{0}` is the same in every row of the training runs, or has no value there: nothing can be learnt of it")]
+    Constant(String),
     /// The paper's methods train a network alone.
     #[error("effects can be fitted with the second-order method only")]
     EffectsNeedSecondOrder,
