@@ -64,7 +64,7 @@ pub fn proof(weights: &Weights) -> u32 {
 /// One effect on channel 0.
 #[must_use]
 pub fn term(effect: u16, parameters: &[f32]) -> Term {
-    Term { effect, channel: 0, parameters: parameters.iter().copied().collect() }
+    Term { effect, channel: 0, parameters: parameters.iter().copied().collect(), program: heapless::Vec::new() }
 }
 
 fn name<const N: usize>(name: &str) -> heapless::String<N> {

@@ -17,7 +17,7 @@ use crate::fit::firefly::FireflyError;
 use crate::fit::gradient_descent::DescentError;
 use crate::fit::polynomial::Polynomial;
 use crate::model::Model;
-use crate::progress::Progress;
+use crate::progress::{Progress, Quiet};
 use crate::residuals::{Residuals, arranged, residuals};
 use protocol::Weights;
 use task::Task;
@@ -125,6 +125,14 @@ impl Search {
         let restarts = candidates.iter().map(|candidate| candidate.restart).collect();
         Self { restarts, best: candidates.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost)) }
     }
+}
+
+/// Whether these settings could be trained, found out without training.
+///
+/// # Errors
+/// [`TrainError`] says what is missing.
+pub fn check(campaign: &Campaign, split: &Split, settings: &TrainSettings) -> Result<(), TrainError> {
+    Task::new(campaign, split, settings, &Quiet).map(|_| ())
 }
 
 /// Trains on the split's training runs.
