@@ -216,7 +216,7 @@ fn a_buffer_that_is_too_small_is_reported_for_every_size() {
 
 #[test]
 fn blobs_of_layout_2_are_the_recorded_bytes() {
-    golden::check("blob-v2.bin", &example::blob_bytes());
+    golden::check("blob-v2.bin", &example::stored(&example::with_expression()));
 }
 
 #[test]

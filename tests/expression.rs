@@ -110,7 +110,10 @@ fn what_is_hidden_is_found_and_the_residual_falls_to_the_noise() {
     println!("{:?}", MODEL.effects);
     assert!(with < 1.1 * CASE.floor_ug && alone > 5.0 * with && catalogue > 1.5 * with);
     let effect = &MODEL.effects[0];
-    assert_eq!((effect.expression.as_deref(), MODEL.channels.as_slice()), (Some(EXPRESSION), &["supply_v".to_owned()][..]));
+    assert_eq!(
+        (effect.expression.as_deref(), MODEL.channels.as_slice()),
+        (Some(EXPRESSION), &["supply_v".to_owned()][..])
+    );
     let off = |name: &str, hidden: f64| (effect.parameters[name] / hidden - 1.0).abs();
     assert!(off("amplitude_g", HIDDEN.0) < 0.03 && off("tau_s", HIDDEN.1) < 0.1, "{effect:?}");
 }
@@ -162,6 +165,23 @@ fn what_cannot_be_learnt_is_refused_before_training() {
     assert!(text.contains("column 1") && text.contains("did you mean `supply_v`?"), "{text}");
 }
 
+#[test]
+fn every_step_of_a_program_has_the_same_bits_there() {
+    let (blob, samples) = (example::with_expression(), example::samples(2500));
+    let mut instrument = VirtualInstrument::new(example::SERIAL);
+    instrument.upload(&blob).expect("uploaded");
+    let there = instrument.replay(&samples).expect("readings");
+    let mut compensator = Compensator::load(&blob).expect("it is sound");
+    let mut plain = Compensator::load(&example::blob()).expect("it is sound");
+    let mut works = 0;
+    for (sample, there) in samples.iter().zip(there) {
+        let here = compensator.compensate(sample);
+        assert!(here.same_bits(&there), "{sample:?}");
+        works += usize::from(!here.same_bits(&plain.compensate(sample)));
+    }
+    assert!(works > 1000, "the effect is at work in {works} of the readings");
+}
+
 /// The example with one program for its only effect.
 fn blob_with(program: &[u8]) -> Blob {
     let program: heapless::Vec<u8, MAX_PROGRAM> = program.iter().copied().collect();
@@ -194,7 +214,8 @@ fn random_programs_are_refused_or_give_readings() {
     for _ in 0..20_000 {
         let mut program: Vec<u8> = Vec::new();
         for _ in 0..next(12) {
-            let byte = [0x01, 0x80, 0x03, 0x05, 0x06, 0x10, 0x11, 0x12, 0x13, 0x20, 0x23, 0x24, next(256) as u8][next(13)];
+            let byte =
+                [0x01, 0x80, 0x03, 0x05, 0x06, 0x10, 0x11, 0x12, 0x13, 0x20, 0x23, 0x24, next(256) as u8][next(13)];
             program.push(byte);
         }
         match Compensator::load(&blob_with(&program)) {

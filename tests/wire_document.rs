@@ -103,7 +103,8 @@ fn every_step_of_a_program_has_the_documented_byte() {
     let byte = |text: &str| u8::from_str_radix(text.strip_prefix("0x")?, 16).ok();
     let documented: BTreeMap<u8, String> =
         rows("Program").iter().filter_map(|row| Some((byte(row.first()?)?, row.get(1)?.clone()))).collect();
-    let last = |step: &Step| format!("{step:?}").trim_end_matches(')').rsplit('(').next().unwrap_or_default().to_owned();
+    let last =
+        |step: &Step| format!("{step:?}").trim_end_matches(')').rsplit('(').next().unwrap_or_default().to_owned();
     let name = |step: Step| match step {
         Step::Constant(_) => "Constant".to_owned(),
         Step::Read(Input::Channel(_)) => "Channel".to_owned(),

@@ -23,8 +23,7 @@ pub const NAMES: [(&str, &str, Input); 7] = [
 ];
 
 /// What an expression may apply to a value in parentheses. Squares are written `a^2`.
-pub const FUNCTIONS: [(&str, One); 3] =
-    [("abs", One::Absolute), ("sqrt", One::SquareRoot), ("exp", One::Exponential)];
+pub const FUNCTIONS: [(&str, One); 3] = [("abs", One::Absolute), ("sqrt", One::SquareRoot), ("exp", One::Exponential)];
 
 /// An expression that is right in every respect for some list of channels.
 #[derive(Clone, Debug, PartialEq, Eq)]

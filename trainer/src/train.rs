@@ -87,7 +87,9 @@ pub enum TrainError {
     #[error(transparent)]
     Expression(#[from] ExpressionError),
     /// What it depends on doesn't vary.
-    #[error("expression `{0}` is the same in every row of the training runs, or has no value there: nothing can be learnt of it")]
+    #[error(
+        "expression `{0}` is the same in every row of the training runs, or has no value there: nothing can be learnt of it"
+    )]
     Constant(String),
     /// The paper's methods train a network alone.
     #[error("effects can be fitted with the second-order method only")]

@@ -76,7 +76,8 @@ mod tests {
     #[test]
     fn every_input_is_what_its_name_says() {
         let mut bench = Bench { departure: 7.0, level_g: 0.5, ..Bench::REST };
-        (bench.now.power_on_s, bench.now.age_days, bench.now.channels) = (600.0, 400.0, [1., 2., 3., 4., 5., 6., 7., 8.]);
+        (bench.now.power_on_s, bench.now.age_days, bench.now.channels) =
+            (600.0, 400.0, [1., 2., 3., 4., 5., 6., 7., 8.]);
         let inputs = [25.0, 7.0, 0.2, 76.0, 0.5, 600.0, 400.0];
         for (byte, value) in (1..).zip(inputs).chain((0x80..).zip(bench.now.channels)) {
             assert_near(bias_g(&bench, &[byte]), 2e-3 * value);

@@ -35,10 +35,9 @@ impl Remove {
         effects.retain(|choice| !choice.is_same(&unwanted));
         if effects.len() == before {
             let names: Vec<&str> = effects.iter().map(EffectChoice::title).collect();
-            return Err(Failure::new(format_args!("the model has no effect `{}`", unwanted.title())).help(format_args!(
-                "it has: {}",
-                if names.is_empty() { "none".to_owned() } else { names.join(", ") }
-            )));
+            return Err(Failure::new(format_args!("the model has no effect `{}`", unwanted.title())).help(
+                format_args!("it has: {}", if names.is_empty() { "none".to_owned() } else { names.join(", ") }),
+            ));
         }
         ladder(&change, &effects, &self.output, self.json)
     }

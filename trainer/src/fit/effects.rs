@@ -258,7 +258,8 @@ fn mean_deed(deeds: &[Deed]) -> Deed {
 
 impl Rows for MovedRows<'_> {
     fn parameters(&self) -> usize {
-        let free = |effect: &Chosen| effect.about.parameters.iter().filter(|about| effect.fixed(about).is_none()).count();
+        let free =
+            |effect: &Chosen| effect.about.parameters.iter().filter(|about| effect.fixed(about).is_none()).count();
         self.effects.iter().map(free).sum()
     }
 

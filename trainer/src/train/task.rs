@@ -183,7 +183,11 @@ fn choose_expression(
     let mean_g = crate::metrics::mean(&course_g);
     let size = rms(&course_g);
     let scatter = rms(course_g.iter().map(|value_g| value_g - mean_g).collect::<Vec<_>>().iter());
-    if scatter > size * LEAST_VARIATION { Ok(Chosen { size, ..chosen }) } else { Err(TrainError::Constant(text.to_owned())) }
+    if scatter > size * LEAST_VARIATION {
+        Ok(Chosen { size, ..chosen })
+    } else {
+        Err(TrainError::Constant(text.to_owned()))
+    }
 }
 
 /// A fitted effect as the model file keeps it.
