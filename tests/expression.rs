@@ -147,8 +147,18 @@ fn a_model_file_with_it_is_read_as_it_was_written_and_trained_on_from_where_it_i
 fn several_expressions_share_a_model_and_a_time_constant_is_fitted_only_where_there_is_a_past() {
     let two = model(vec![EffectChoice::expression(EXPRESSION), EffectChoice::expression("(supply_v - 5) * level_g")]);
     assert!(residual_ug(&two) < 1.1 * CASE.floor_ug);
-    assert!((two.effects[1].parameters["tau_s"] - 30.0).abs() < 1e-9, "{:?}", two.effects);
-    assert!(two.to_blob().is_ok());
+    let names = |index: usize| two.effects[index].parameters.keys().map(String::as_str).collect::<Vec<_>>();
+    assert_eq!((names(0), names(1)), (vec!["amplitude_g", "tau_s"], vec!["amplitude_g"]));
+    assert_eq!(two.to_blob().expect("a blob").terms[1].parameters.len(), 2);
+    assert!(EffectChoice::of(&two).iter().all(|choice| choice.start.is_some()));
+}
+
+#[test]
+fn the_unit_of_an_expression_does_not_matter() {
+    let tiny = model(vec![EffectChoice::expression("1e-9 * supply_v * temperature_rate")]);
+    assert!((residual_ug(&tiny) / residual_ug(&MODEL) - 1.0).abs() < 1e-3);
+    let amplitude_g = |model: &Model| model.effects[0].parameters["amplitude_g"];
+    assert!((amplitude_g(&tiny) / amplitude_g(&MODEL) * 1e-9 - 1.0).abs() < 1e-3);
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod tests;
 
 pub use print::print;
 
+use firmware_core::effect::{Parameter, Role};
 use firmware_core::program::{Input, One, Program, Reads, Step};
 use protocol::limits::MAX_PROGRAM;
 use thiserror::Error;
@@ -91,6 +92,12 @@ impl Expression {
     #[must_use]
     pub const fn reads(&self) -> Reads {
         self.program.reads()
+    }
+
+    /// Whether this coefficient of the effect means nothing to it: a time constant, where it doesn't look back.
+    #[must_use]
+    pub fn leaves_idle(&self, parameter: &Parameter) -> bool {
+        parameter.role == Role::Shape && !self.reads().past
     }
 
     /// Whether it reads this channel.

@@ -10,7 +10,7 @@ use trainer::train::EffectChoice;
 /// Adds a physical effect to a model, retrains everything together, and shows how far the residual falls.
 #[derive(Args)]
 #[command(after_help = "Example:  tempco add model.toml thermal-lag campaign.csv -o better.toml
-          tempco add model.toml --expression \"supply_v * temperature_rate\" campaign.csv -o better.toml")]
+          tempco add model.toml --expression \"supply_v * temperature_rate\" campaign.csv -o b.toml")]
 pub struct Add {
     /// Model file
     model: PathBuf,

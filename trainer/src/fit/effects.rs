@@ -50,16 +50,15 @@ impl Chosen {
     /// The value of a coefficient that is not fitted: a fit can't tell an origin from the bias, and a time
     /// constant means nothing to an expression that doesn't look back.
     fn fixed(&self, parameter: &Parameter) -> Option<f64> {
-        let forgetful = self.expression.as_ref().is_some_and(|expression| !expression.reads().past);
+        let idle = self.expression.as_ref().is_some_and(|expression| expression.leaves_idle(parameter));
         match parameter.role {
             Role::Origin => Some(self.origin),
-            Role::Shape if forgetful => Some(parameter.start),
-            _ => None,
+            _ => idle.then_some(parameter.start),
         }
     }
 
     /// The optimiser's parameter for a coefficient's value, and back.
-    fn to_parameter(&self, parameter: &Parameter, value: f64) -> f64 {
+    fn parameter_of(&self, parameter: &Parameter, value: f64) -> f64 {
         match parameter.role {
             Role::Amplitude => value * self.size,
             Role::Shape => value.ln(),
@@ -67,7 +66,7 @@ impl Chosen {
         }
     }
 
-    fn from_parameter(&self, parameter: &Parameter, free: f64) -> f64 {
+    fn value_of(&self, parameter: &Parameter, free: f64) -> f64 {
         let value = match parameter.role {
             Role::Amplitude => free / self.size,
             Role::Shape => free.exp(),
@@ -100,7 +99,7 @@ impl Coefficients {
         let mut parameters = Vec::new();
         for (effect, values) in effects.iter().zip(&self.values) {
             let free = effect.about.parameters.iter().zip(values).filter(|(about, _)| effect.fixed(about).is_none());
-            parameters.extend(free.map(|(about, value)| effect.to_parameter(about, *value)));
+            parameters.extend(free.map(|(about, value)| effect.parameter_of(about, *value)));
         }
         parameters
     }
@@ -111,7 +110,7 @@ impl Coefficients {
         let mut next = parameters.iter().copied();
         let mut value = |effect: &Chosen, about: &Parameter| match effect.fixed(about) {
             Some(fixed) => fixed,
-            None => effect.from_parameter(about, next.next().unwrap_or_default()),
+            None => effect.value_of(about, next.next().unwrap_or_default()),
         };
         let of = |effect: &Chosen| effect.about.parameters.iter().map(|about| value(effect, about)).collect();
         Self { values: effects.iter().map(of).collect() }

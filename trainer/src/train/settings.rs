@@ -3,7 +3,6 @@
 use super::backprop::{Backprop, Swarm};
 use crate::expression::alike;
 use crate::model::{Model, ModelEffect};
-use firmware_core::effect;
 
 /// How the weights are found.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,15 +107,11 @@ impl EffectChoice {
     /// The effects of a model, to be fitted anew from where they are.
     #[must_use]
     pub fn of(model: &Model) -> Vec<Self> {
-        let start = |effect: &ModelEffect| {
-            let about = effect::about(&effect.name)?;
-            about.parameters.iter().map(|parameter| effect.parameters.get(parameter.name).copied()).collect()
-        };
         let choice = |effect: &ModelEffect| Self {
             name: effect.name.clone(),
             channel: effect.channel.clone(),
             expression: effect.expression.clone(),
-            start: start(effect),
+            start: effect.coefficients(&model.channels).ok(),
         };
         model.effects.iter().map(choice).collect()
     }

@@ -11,7 +11,7 @@ use crate::fit::polynomial::Polynomial;
 use crate::model::{Model, ModelDomain, ModelEffect, ModelNetwork, ModelScaling, Provenance, Units};
 use crate::noise::{Components, Mean, rms, sample_sigma_g};
 use crate::progress::Progress;
-use firmware_core::effect;
+use firmware_core::effect::{self, Parameter};
 use protocol::Weights;
 
 /// What every method starts from.
@@ -192,12 +192,13 @@ fn choose_expression(
 
 /// A fitted effect as the model file keeps it.
 fn fitted(effect: &Chosen, values: &[f64], campaign: &Campaign) -> ModelEffect {
-    let names = effect.about.parameters.iter().map(|parameter| parameter.name.to_owned());
+    let idle = |parameter: &Parameter| effect.expression.as_ref().is_some_and(|text| text.leaves_idle(parameter));
+    let named = effect.about.parameters.iter().zip(values).filter(|(parameter, _)| !idle(parameter));
     ModelEffect {
         name: effect.about.name.to_owned(),
         channel: effect.about.channel.and_then(|_| campaign.channels.get(effect.channel).cloned()),
         expression: effect.expression.as_ref().map(|expression| expression.text().to_owned()),
-        parameters: names.zip(values.iter().copied()).collect(),
+        parameters: named.map(|(parameter, value)| (parameter.name.to_owned(), *value)).collect(),
     }
 }
 
