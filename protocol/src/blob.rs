@@ -132,7 +132,7 @@ impl fmt::Display for BlobError {
             Self::Truncated { found, expected } => write!(f, "truncated: {found} bytes, expected {expected}"),
             Self::NotABlob => write!(f, "not a calibration blob: it does not begin with \"TPCO\""),
             Self::Layout { found, supported } => {
-                write!(f, "layout version {found}, this reader understands {supported}")
+                write!(f, "layout version {found} is not supported, only {supported} is: export the model again")
             }
             Self::Checksum { computed, stored } => {
                 write!(f, "corrupted: checksum {computed:#010x}, stored {stored:#010x}")
