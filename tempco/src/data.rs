@@ -5,13 +5,20 @@ use clap::Args;
 use std::path::PathBuf;
 use trainer::campaign::{Campaign, HoldOut, Measured, ReadOptions};
 
-/// Where the measurements are and how to read them.
+/// Where the measurements are, and how to read them.
 #[derive(Args)]
 pub struct Data {
     /// Campaign: CSV files, or folders of them
     #[arg(required = true, value_name = "DATA")]
     pub files: Vec<PathBuf>,
 
+    #[command(flatten)]
+    reading: Reading,
+}
+
+/// How to read measurements.
+#[derive(Args)]
+pub struct Reading {
     /// Reads a column under another name, with a factor and an offset if need be: `delta_f_hz=FreqDiff`, `time_s=t_ms*0.001`
     #[arg(long, value_name = "NAME=COLUMN")]
     pub map: Vec<String>,
@@ -47,6 +54,12 @@ pub struct Data {
 
 impl Data {
     pub fn read(&self) -> Result<Campaign, Failure> {
+        self.reading.read(&self.files)
+    }
+}
+
+impl Reading {
+    pub fn read(&self, files: &[PathBuf]) -> Result<Campaign, Failure> {
         let mut options = ReadOptions {
             signal: measured(self.signal.as_ref(), self.signal_unit.as_ref()),
             reference: measured(self.reference.as_ref(), self.reference_unit.as_ref()),
@@ -62,7 +75,7 @@ impl Data {
             })?;
             options.map.push((name.trim().to_owned(), column.trim().to_owned()));
         }
-        Ok(Campaign::read(&self.files, &options)?)
+        Ok(Campaign::read(files, &options)?)
     }
 }
 

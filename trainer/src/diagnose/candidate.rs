@@ -38,7 +38,7 @@ impl Candidate {
     pub fn all(instrument: &Instrument, layout: &Layout, sum: Option<&SumChannel>, shown: &[Chosen]) -> Vec<Self> {
         let still = vec_of_rest(layout);
         let shapes: Vec<(Chosen, Vec<f64>)> =
-            shown.iter().flat_map(|effect| shapes(effect, layout).into_iter().map(|values| (*effect, values))).collect();
+            shown.iter().flat_map(|effect| shapes(effect, layout).into_iter().map(|values| (effect.clone(), values))).collect();
         let of = |(effect, values): (Chosen, Vec<f64>)| Self::new(instrument, layout, sum, &still, effect, values);
         shapes.into_par_iter().map(of).collect()
     }
@@ -80,12 +80,12 @@ pub(super) fn amplitudes(about: &About) -> Vec<usize> {
 /// The effects that the campaign has the channels for.
 pub(super) fn with_channels(campaign: &Campaign) -> Vec<Chosen> {
     let chosen = |about: &'static About| {
-        let Some(name) = about.channel else { return Some(Chosen { about, channel: 0, origin: 0.0 }) };
+        let Some(name) = about.channel else { return Some(Chosen::of(about)) };
         let channel = campaign.channels.iter().position(|channel| channel == name)?;
         let values: Vec<f64> = campaign.rows().map(|row| row.sample.channels[channel] as f64 * 1e-6).collect();
-        Some(Chosen { about, channel, origin: crate::metrics::mean(&values) })
+        Some(Chosen { channel, origin: crate::metrics::mean(&values), ..Chosen::of(about) })
     };
-    effect::ALL.iter().filter(|about| about.is_on_device()).filter_map(|about| chosen(about)).collect()
+    effect::ALL.iter().filter(|about| about.is_on_device() && about.name != "expression").filter_map(|about| chosen(about)).collect()
 }
 
 fn shapes(effect: &Chosen, layout: &Layout) -> Vec<Vec<f64>> {

@@ -40,7 +40,7 @@ impl Known {
     /// These and one more.
     pub fn with(&self, effect: &Chosen, values: &[f64]) -> Self {
         let mut known = self.clone();
-        known.effects.push(*effect);
+        known.effects.push(effect.clone());
         known.coefficients.values.push(values.to_vec());
         known
     }

@@ -182,7 +182,7 @@ impl Case<'_> {
             score.gain()
         };
         let evidence = gain - self.price() * freedom_of(&candidate.effect) as f64;
-        Contender { effect: candidate.effect, values, evidence, noises: None }
+        Contender { effect: candidate.effect.clone(), values, evidence, noises: None }
     }
 
     /// The scale factor, mHz per µg.

@@ -7,7 +7,7 @@
 //! that goes through the same filter can be compared by plain least squares.
 
 use super::layout::{Cell, Layout, Stretch};
-use nalgebra::{DMatrix, SMatrix, SVector};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Values of several columns at the cells: one matrix a run, a row a cell.
@@ -46,10 +46,8 @@ pub(super) const BEGINNING: usize = 7;
 /// Correlation times of the two octaves of flicker and of the wander, s.
 const TAUS_S: [f64; 3] = [60.0, 600.0, 5000.0];
 
-// States: run, mounting, position, node, two of flicker, wander, walk, beginning.
-const STATES: usize = 9;
-type State = SVector<f64, STATES>;
-type Covariance = SMatrix<f64, STATES, STATES>;
+/// Most states: one a part, and another octave of flicker.
+const STATES: usize = PARTS + 1;
 
 /// Columns whose noise is white with variance one.
 pub(super) struct Whitened {
@@ -57,6 +55,25 @@ pub(super) struct Whitened {
     pub columns: Columns,
     /// Logarithm of the determinant of the noise's covariance.
     pub log_det: f64,
+}
+
+/// One state of the filter.
+#[derive(Clone, Copy)]
+struct State {
+    kind: Kind,
+    /// Its variance at the start and in equilibrium; what it gains in a second, for a walk.
+    variance: f64,
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Run,
+    Mounting,
+    Position,
+    Node,
+    Fading(f64),
+    Walk,
+    Beginning,
 }
 
 /// The filter's work at one cell, the same for every column.
@@ -70,16 +87,15 @@ struct Step {
 /// A small random walk adds this share of the sample noise in a second.
 const SMALL_WALK: f64 = 0.01;
 
-/// So many columns are filtered at once.
-const LANES: usize = 4;
-
 impl NoiseModel {
     /// Takes the noise's correlation out of the columns.
     pub fn whiten(&self, layout: &Layout, columns: &Columns) -> Whitened {
         let pairs: Vec<_> = layout.stretches.iter().zip(columns).collect();
+        let states = self.states();
         let runs = pairs.into_par_iter().map(|(stretch, values)| {
-            let (steps, log_det) = self.steps(stretch);
-            (filtered(&steps, values), log_det)
+            let (steps, log_det) = self.steps(stretch, &states);
+            let white = if values.ncols() == 1 { filtered::<1> } else { filtered::<4> };
+            (white(&steps, states.len(), values), log_det)
         });
         let (columns, log_dets): (Vec<_>, Vec<f64>) = runs.unzip();
         Whitened { columns, log_det: log_dets.iter().sum() }
@@ -93,63 +109,111 @@ impl NoiseModel {
         small
     }
 
-    fn steps(&self, stretch: &Stretch) -> (Vec<Step>, f64) {
-        let mut covariance = self.start();
+    /// The states that make a difference.
+    fn states(&self) -> Vec<State> {
+        let [run, mounting, position, node, flicker, wander, walk, beginning] = self.parts;
+        let [fast, slow, slowest] = TAUS_S.map(Kind::Fading);
+        let all = [
+            (Kind::Run, run),
+            (Kind::Mounting, mounting),
+            (Kind::Position, position),
+            (Kind::Node, node),
+            (fast, flicker),
+            (slow, flicker),
+            (slowest, wander),
+            (Kind::Walk, walk * 60.0),
+            (Kind::Beginning, beginning),
+        ];
+        let matters = |&(_, sigma): &(Kind, f64)| sigma > self.sample * NOTHING;
+        let state = |(kind, sigma): (Kind, f64)| State { kind, variance: sigma * sigma };
+        let walk = |state: State| match state.kind {
+            Kind::Walk => State { variance: state.variance / 3600.0, ..state },
+            _ => state,
+        };
+        all.into_iter().filter(matters).map(state).map(walk).collect()
+    }
+
+    fn steps(&self, stretch: &Stretch, states: &[State]) -> (Vec<Step>, f64) {
+        let count = states.len();
+        let mut covariance = [[0.0; STATES]; STATES];
         let (mut log_det, mut last_s) = (0.0, 0.0);
         let mut steps = Vec::with_capacity(stretch.cells.len());
         for (index, cell) in stretch.cells.iter().enumerate() {
-            let kept = self.predict(&mut covariance, cell, (cell.time_s - last_s).max(0.0), index == 0);
+            let dt_s = (cell.time_s - last_s).max(0.0);
             last_s = cell.time_s;
-            let seen = sight(cell);
-            let shared = covariance * seen;
+            let kept = predict(&mut covariance, states, cell, dt_s, index == 0);
+            let mut seen = [0.0; STATES];
+            seen.iter_mut().zip(states).for_each(|(seen, state)| *seen = state.kind.seen(cell));
+            let mut shared = [0.0; STATES];
+            for i in 0..count {
+                shared[i] = (0..count).map(|j| covariance[i][j] * seen[j]).sum();
+            }
             let own = self.sample.powi(2) / cell.samples + (self.per_c * cell.unseen_c).powi(2);
-            let variance = seen.dot(&shared) + own;
-            let gain = shared / variance;
-            covariance -= gain * shared.transpose();
+            let variance = own + (0..count).map(|i| seen[i] * shared[i]).sum::<f64>();
+            let gain = shared.map(|shared| shared / variance);
+            for i in 0..count {
+                for j in 0..count {
+                    covariance[i][j] -= gain[i] * shared[j];
+                }
+            }
             log_det += variance.ln();
-            steps.push(Step { seen: seen.into(), kept: kept.into(), gain: gain.into(), scale: variance.sqrt().recip() });
+            steps.push(Step { seen, kept, gain, scale: variance.sqrt().recip() });
         }
         (steps, log_det)
     }
+}
 
-    fn start(&self) -> Covariance {
-        let [run, mounting, position, node, flicker, wander, _, beginning] = self.parts.map(|sigma| sigma * sigma);
-        let start = [run, mounting, position, node, flicker, flicker, wander, 0.0, beginning];
-        Covariance::from_diagonal(&State::from(start))
+/// Below this share of the sample noise a part is left out.
+const NOTHING: f64 = 0.021;
+
+impl Kind {
+    /// How it shows in a cell.
+    fn seen(self, cell: &Cell) -> f64 {
+        match self {
+            Self::Mounting | Self::Position => cell.cross_g,
+            Self::Beginning => cell.beginning,
+            _ => 1.0,
+        }
     }
 
-    /// Moves the states' covariance on to `cell`; returns which share of each state is kept.
-    fn predict(&self, covariance: &mut Covariance, cell: &Cell, dt_s: f64, first: bool) -> State {
-        let mut kept = State::repeat(1.0);
+    /// Which share of it is kept on the way to a cell.
+    fn kept(self, cell: &Cell, dt_s: f64) -> f64 {
+        match self {
+            Self::Position if cell.new_position => 0.0,
+            Self::Node if cell.new_node => 0.0,
+            Self::Fading(tau_s) => (-dt_s / tau_s).exp(),
+            _ => 1.0,
+        }
+    }
+}
+
+/// Moves the states' covariance on to `cell`; returns which share of each state is kept.
+fn predict(
+    covariance: &mut [[f64; STATES]; STATES],
+    states: &[State],
+    cell: &Cell,
+    dt_s: f64,
+    first: bool,
+) -> [f64; STATES] {
+    let mut kept = [1.0; STATES];
+    for (i, state) in states.iter().enumerate() {
+        let walks = matches!(state.kind, Kind::Walk);
         if first {
-            return kept;
+            covariance[i][i] = if walks { 0.0 } else { state.variance };
+            continue;
         }
-        let [_, _, position, node, flicker, wander, walk, _] = self.parts.map(|sigma| sigma * sigma);
-        let fresh = |is_new: bool| if is_new { 0.0 } else { 1.0 };
-        (kept[2], kept[3]) = (fresh(cell.new_position), fresh(cell.new_node));
-        for (slot, tau_s) in TAUS_S.into_iter().enumerate() {
-            kept[4 + slot] = (-dt_s / tau_s).exp();
+        kept[i] = state.kind.kept(cell, dt_s);
+        if kept[i] != 1.0 {
+            (0..states.len()).for_each(|j| covariance[i][j] *= kept[i]);
+            (0..states.len()).for_each(|j| covariance[j][i] *= kept[i]);
         }
-        for i in 0..STATES {
-            for j in 0..STATES {
-                covariance[(i, j)] *= kept[i] * kept[j];
-            }
-        }
-        let stationary = [position, node, flicker, flicker, wander];
-        for (state, variance) in (2..).zip(stationary) {
-            covariance[(state, state)] += variance * (1.0 - kept[state].powi(2));
-        }
-        covariance[(7, 7)] += walk * dt_s;
-        kept
+        covariance[i][i] += if walks { state.variance * dt_s } else { state.variance * (1.0 - kept[i].powi(2)) };
     }
+    kept
 }
 
-/// How each state shows in a cell.
-fn sight(cell: &Cell) -> State {
-    State::from([1.0, cell.cross_g, cell.cross_g, 1.0, 1.0, 1.0, 1.0, 1.0, cell.beginning])
-}
-
-fn filtered(steps: &[Step], values: &DMatrix<f64>) -> DMatrix<f64> {
+/// Filters so many columns at once.
+fn filtered<const LANES: usize>(steps: &[Step], count: usize, values: &DMatrix<f64>) -> DMatrix<f64> {
     let (rows, width) = values.shape();
     let mut white = DMatrix::zeros(rows, width);
     let source = values.as_slice();
@@ -162,7 +226,7 @@ fn filtered(steps: &[Step], values: &DMatrix<f64>) -> DMatrix<f64> {
             for lane in 0..lanes {
                 values[lane] = source[start + lane * rows + row];
             }
-            innovate(step, &mut states, &mut values);
+            innovate(step, count, &mut states, &mut values);
             for lane in 0..lanes {
                 target[lane * rows + row] = values[lane] * step.scale;
             }
@@ -172,16 +236,16 @@ fn filtered(steps: &[Step], values: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// Turns values into what the past did not foretell, and learns from it.
-fn innovate(step: &Step, states: &mut [[f64; LANES]; STATES], values: &mut [f64; LANES]) {
-    for (state, (kept, seen)) in states.iter_mut().zip(step.kept.iter().zip(&step.seen)) {
-        for (state, value) in state.iter_mut().zip(values.iter_mut()) {
-            *state *= kept;
-            *value -= seen * *state;
+fn innovate<const LANES: usize>(step: &Step, count: usize, states: &mut [[f64; LANES]; STATES], values: &mut [f64; LANES]) {
+    for state in 0..count {
+        for lane in 0..LANES {
+            states[state][lane] *= step.kept[state];
+            values[lane] -= step.seen[state] * states[state][lane];
         }
     }
-    for (state, gain) in states.iter_mut().zip(&step.gain) {
-        for (state, value) in state.iter_mut().zip(values.iter()) {
-            *state += gain * value;
+    for state in 0..count {
+        for lane in 0..LANES {
+            states[state][lane] += step.gain[state] * values[lane];
         }
     }
 }
