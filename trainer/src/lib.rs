@@ -19,6 +19,7 @@
 pub mod campaign;
 pub mod compare;
 pub mod cross_validation;
+pub mod diagnose;
 pub mod fit;
 pub mod metrics;
 pub mod model;

@@ -1,0 +1,126 @@
+//! What a diagnosis says. Data; whoever shows it formats it.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Which physical effects a model lacks, as far as the measurements can tell.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Diagnosis {
+    /// The answer in a word.
+    pub verdict: Verdict,
+    /// Held-out residual of the model as it is, µg: each run predicted from the others.
+    pub residual_ug: f64,
+    /// Held-out residual with all findings added, µg.
+    pub residual_after_ug: f64,
+    /// Noise from sample to sample that no model could remove, µg.
+    pub noise_floor_ug: f64,
+    /// Share of the residual's square above the noise that the findings remove, 0 to 1. What is new at
+    /// every start of the sensor counts as noise here.
+    pub explainable: f64,
+    /// What is missing, in the order in which it should be added.
+    pub findings: Vec<Finding>,
+    /// What this campaign can't show.
+    pub unobservable: Vec<Unobservable>,
+    /// Structure that no known effect accounts for.
+    pub unexplained: Option<Unexplained>,
+    /// How much of the residual follows each quantity, before and after the findings.
+    pub dependences: Vec<Dependence>,
+    /// The noise that the judgement rests on.
+    pub noise: Noise,
+}
+
+/// The answer in a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The first finding is missing; nothing else explains the residual as well.
+    Missing,
+    /// Several effects explain the residual equally well; an experiment separates them.
+    Ambiguous,
+    /// The residual is noise.
+    NothingMissing,
+    /// There is structure, and no known effect is its cause.
+    Unexplained,
+}
+
+/// One effect that is missing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// Its name.
+    pub effect: String,
+    /// Held-out residual before it is added, and after the findings before it are, µg.
+    pub residual_before_ug: f64,
+    /// Held-out residual after it is added, µg.
+    pub residual_after_ug: f64,
+    /// Twice the gain in log likelihood, noise estimated anew, less what its parameters are worth.
+    pub evidence: f64,
+    /// Its parameters.
+    pub parameters: BTreeMap<String, Estimate>,
+    /// Effects that would explain the same.
+    pub confounded_with: Vec<String>,
+    /// The experiment that would separate them.
+    pub separate_by: Option<String>,
+}
+
+/// A value and its standard uncertainty.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The value, in the unit that ends the parameter's name.
+    pub value: f64,
+    /// Its standard uncertainty.
+    pub sigma: f64,
+}
+
+/// An effect that this campaign can't show.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Unobservable {
+    /// Its name.
+    pub effect: String,
+    /// Why not.
+    pub why: String,
+}
+
+/// Structure without a known cause.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Unexplained {
+    /// What the residual depends on, strongest first.
+    pub depends_on: Vec<String>,
+    /// Its period, if it is periodic in time.
+    pub period_s: Option<f64>,
+    /// A formula that describes it, as `add --expression` takes it.
+    pub formula: Option<String>,
+    /// Size of the structure, µg RMS.
+    pub residual_ug: f64,
+}
+
+/// How much of the residual follows one quantity.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Dependence {
+    /// The quantity.
+    pub on: String,
+    /// RMS of the part that follows it, µg, noise deducted.
+    pub before_ug: f64,
+    /// The same with the findings added.
+    pub after_ug: f64,
+    /// Probability of as much by chance, before.
+    pub chance_before: f64,
+    /// And after.
+    pub chance_after: f64,
+}
+
+/// Standard deviations of the noise, estimated after the findings.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Noise {
+    /// From sample to sample, µg.
+    pub sample_ug: f64,
+    /// Slow wander within a run (flicker), µg.
+    pub flicker_ug: f64,
+    /// Random walk, µg per √h.
+    pub walk_ug_per_sqrt_h: f64,
+    /// From position to position, µg: table.
+    pub position_ug: f64,
+    /// Per g across the input axis, from run to run, µg: mounting.
+    pub mounting_ug: f64,
+    /// From run to run, µg: turn-on.
+    pub run_ug: f64,
+}
