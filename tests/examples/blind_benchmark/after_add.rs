@@ -29,7 +29,7 @@ impl AfterAdd {
 pub fn compared(options: &Options, case: &Case, diagnosis: &Diagnosis) -> Option<AfterAdd> {
     let on_device = |name: &&str| about(name).is_some_and(firmware_core::effect::About::is_on_device);
     let hidden: Vec<&str> = case.hidden.iter().map(|hidden| hidden.name.as_str()).collect();
-    if hidden.is_empty() || !hidden.iter().all(|name| on_device(name)) {
+    if hidden.is_empty() || !hidden.iter().all(on_device) {
         return None;
     }
     let found: Vec<&str> = diagnosis.findings.iter().map(|finding| finding.effect.as_str()).filter(on_device).collect();
