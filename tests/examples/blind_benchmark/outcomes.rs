@@ -75,6 +75,6 @@ fn after_add(records: &[&Record]) -> Rate {
         .filter_map(|record| record.after_add.map(|after_add| after_add.ratio()))
         .collect();
     let yes = ratios.iter().filter(|ratio| **ratio <= AS_GOOD).count();
-    let what = "visible: with the findings added, held-out residual at most 1.05 times that with the truth";
+    let what = "visible: findings added, held-out residual ≤ 1.05 times the truth's";
     Rate { what, yes, of: ratios.len(), target: Some(95.0) }
 }

@@ -2,7 +2,7 @@
 
 use crate::after_add::AfterAdd;
 use crate::case::Case;
-use crate::judge::Judgement;
+use crate::judge::{Judgement, Outcome};
 use crate::options::{Class, Protocol};
 use serde::Serialize;
 use std::fmt;
@@ -97,6 +97,16 @@ impl Record {
         Self { diagnosis: Some(diagnosis), judgement: Some(judgement), after_add, ..Self::new(case, seconds) }
     }
 
+    /// Whether the answer is what an honest judge of this campaign would say.
+    fn is_right(&self, judgement: &Judgement) -> bool {
+        match self.class {
+            "none" => judgement.outcome == Outcome::Nothing,
+            "outside" => judgement.outcome == Outcome::Unexplained,
+            "pair" => judgement.all_found,
+            _ => judgement.named || judgement.in_set,
+        }
+    }
+
     /// Whether every hidden effect can be seen above the noise of a sample.
     pub fn is_visible(&self) -> bool {
         self.hidden.iter().all(|hidden| hidden.visible_sigma >= 1.0)
@@ -123,6 +133,8 @@ impl fmt::Display for Record {
             return write!(f, " | error: {error}");
         }
         if let (Some(diagnosis), Some(judgement)) = (&self.diagnosis, &self.judgement) {
+            let right = if self.is_right(judgement) { "ok" } else { "NOT" };
+            write!(f, " | {right} {:?} | ", judgement.outcome)?;
             write_answer(f, diagnosis, judgement)?;
         }
         if let Some(after_add) = &self.after_add {
@@ -133,13 +145,8 @@ impl fmt::Display for Record {
 }
 
 fn write_answer(f: &mut fmt::Formatter<'_>, diagnosis: &Diagnosis, judgement: &Judgement) -> fmt::Result {
-    let right = if judgement.named || judgement.in_set { "ok" } else { "NOT" };
-    write!(f, " | {right} {:?} | {:?}", judgement.outcome, diagnosis.verdict)?;
-    write!(
-        f,
-        " {:.2} → {:.2} µg (noise {:.2})",
-        diagnosis.residual_ug, diagnosis.residual_after_ug, diagnosis.noise_floor_ug
-    )?;
+    let Diagnosis { verdict, residual_ug, residual_after_ug, noise_floor_ug, .. } = diagnosis;
+    write!(f, "{verdict:?} {residual_ug:.2} → {residual_after_ug:.2} µg (noise {noise_floor_ug:.2})")?;
     for finding in &diagnosis.findings {
         write!(f, "; {}", finding_words(finding))?;
     }
