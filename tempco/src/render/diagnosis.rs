@@ -7,12 +7,16 @@ use trainer::diagnose::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexpla
 
 /// The whole diagnosis.
 pub fn text(diagnosis: &Diagnosis) -> String {
-    let mut text = format!("{}\n", verdict(diagnosis));
-    text += &findings(&diagnosis.findings);
+    let mut text = short(diagnosis);
     text += &dependences(&diagnosis.dependences);
     text += &noise(&diagnosis.noise);
     text += &unobservable(&diagnosis.unobservable);
     text
+}
+
+/// The verdict and what is missing, without what it rests on.
+pub fn short(diagnosis: &Diagnosis) -> String {
+    format!("{}\n{}", verdict(diagnosis), findings(&diagnosis.findings))
 }
 
 /// The first finding that an instrument can take out.
@@ -22,7 +26,7 @@ pub fn first_to_add(diagnosis: &Diagnosis) -> Option<&str> {
 }
 
 /// The answer in a sentence or two.
-pub fn verdict(diagnosis: &Diagnosis) -> String {
+fn verdict(diagnosis: &Diagnosis) -> String {
     let Diagnosis { verdict, findings, residual_ug, residual_after_ug, noise_floor_ug, explainable, .. } = diagnosis;
     let found: Vec<&str> = findings.iter().map(|finding| finding.effect.as_str()).collect();
     let with = match (verdict, found.len()) {
