@@ -1,10 +1,12 @@
 //! Claim: a damaged, foreign or future calibration is refused with its reason, and the old one runs on.
 
+use firmware_core::program::ProgramError;
 use firmware_core::{Compensator, LoadError};
 use firmware_sim::link::LinkError;
 use firmware_sim::virtual_instrument::VirtualInstrument;
 use protocol::limits::MAX_BLOB;
-use protocol::{Blob, BlobError, Reading, Refusal, Sample, Weights, crc32};
+use protocol::{Blob, BlobError, Reading, Refusal, Sample, Term, Weights, crc32};
+use tests::workspace::root;
 use tests::{example, golden};
 
 /// What a damaged byte at an offset may be called.
@@ -119,9 +121,9 @@ fn a_blob_from_the_future_is_refused_by_its_version_and_not_as_corrupted() {
     let mut bytes = example::blob_bytes();
     bytes[4] += 1;
     let bytes = sealed(bytes);
-    assert_eq!(Blob::from_bytes(&bytes), Err(BlobError::Layout { found: 2, supported: 1 }));
+    assert_eq!(Blob::from_bytes(&bytes), Err(BlobError::Layout { found: 3, supported: 2 }));
     let mut bench = Bench::new();
-    assert_eq!(bench.upload(&bytes), Err(LinkError::Refused(Refusal::Layout(2))));
+    assert_eq!(bench.upload(&bytes), Err(LinkError::Refused(Refusal::Layout(3))));
     bench.assert_the_old_calibration_runs_on();
 }
 
@@ -148,6 +150,11 @@ fn a_blob_for_another_sensor_is_refused_and_one_for_any_sensor_is_not() {
     bench.assert_the_old_calibration_runs_on();
 }
 
+/// An effect whose formula is this program.
+fn own(program: &[u8]) -> Term {
+    Term { program: program.iter().copied().collect(), ..example::term(22, &[1e-3, 35.0]) }
+}
+
 /// A change that makes the example unusable.
 type Spoil = fn(&mut Blob);
 
@@ -157,12 +164,18 @@ fn a_calibration_that_cannot_be_run_is_refused_with_its_reason() {
     let few = LoadError::Coefficients { effect: 1, found: 0, expected: 1 };
     let many = LoadError::Coefficients { effect: 1, found: 2, expected: 1 };
     let channel = LoadError::Channel { effect: 6 };
-    let table: [(&str, Spoil, LoadError); 14] = [
+    let surplus = LoadError::Program { effect: 1, why: ProgramError::Surplus };
+    let unsound = LoadError::Program { effect: 22, why: ProgramError::Operand };
+    let unnamed = LoadError::Channel { effect: 22 };
+    let table: [(&str, Spoil, LoadError); 17] = [
         ("unknown effect", |b| b.terms[0].effect = 999, unknown),
         ("too few coefficients", |b| b.terms[0].parameters.clear(), few),
         ("too many coefficients", |b| b.terms[0].parameters.push(1.0).expect("room"), many),
         ("a channel beyond the named ones", |b| b.terms[5].channel = 1, channel),
         ("no channel named", |b| b.channels.clear(), channel),
+        ("a program where none belongs", |b| b.terms[0].program.push(0x01).expect("room"), surplus),
+        ("a program that can't be run", |b| b.terms[5] = own(&[0x01, 0x10]), unsound),
+        ("a program that reads a channel without a name", |b| b.terms[5] = own(&[0x81]), unnamed),
         ("an infinite weight", |b| b.weights.input[4][1] = f32::INFINITY, LoadError::Number),
         ("a weight that is no number", |b| b.weights.output_bias = f32::NAN, LoadError::Number),
         ("an infinite coefficient", |b| b.terms[1].parameters[0] = f32::NEG_INFINITY, LoadError::Number),
@@ -202,6 +215,15 @@ fn a_buffer_that_is_too_small_is_reported_for_every_size() {
 }
 
 #[test]
-fn blobs_of_layout_1_are_the_recorded_bytes() {
-    golden::check("blob-v1.bin", &example::blob_bytes());
+fn blobs_of_layout_2_are_the_recorded_bytes() {
+    golden::check("blob-v2.bin", &example::stored(&example::with_expression()));
+}
+
+#[test]
+fn a_blob_of_layout_1_is_refused_by_its_version() {
+    let bytes = std::fs::read(root().join("tests/golden/blob-v1.bin")).expect("the recorded bytes");
+    assert_eq!(Blob::from_bytes(&bytes), Err(BlobError::Layout { found: 1, supported: 2 }));
+    let mut bench = Bench::new();
+    assert_eq!(bench.upload(&bytes), Err(LinkError::Refused(Refusal::Layout(1))));
+    bench.assert_the_old_calibration_runs_on();
 }

@@ -6,8 +6,8 @@
 use firmware_core::effect::{self, About, Parameter, Role};
 use firmware_core::{Compensator, LoadError, Observation, Real, Terms};
 use firmware_sim::virtual_instrument::VirtualInstrument;
-use protocol::limits::{MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_PARAMETERS};
-use protocol::{Blob, Sample, Scaling, Status, crc32};
+use protocol::limits::{MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_PARAMETERS, MAX_PROGRAM};
+use protocol::{Blob, Sample, Scaling, Status, Term, crc32};
 use std::collections::BTreeSet;
 use tests::{example, golden};
 
@@ -20,7 +20,7 @@ type Deed<R> = [R; 3];
 /// Worked out on paper from the formulas' closed forms, with L(r, τ) = r·τ·(1 − exp(−100 s/τ)) for how
 /// far a lag trails a signal that has run at the rate r for 100 s.
 #[rustfmt::skip]
-const WORKED: [Row; 20] = [
+const WORKED: [Row; 21] = [
     Row("thermal-lag", &[35.0], [-3.298_985_833, 0.0, 0.0]), // −L(0.1 °C/s, 35 s)
     Row("thermal-gradient", &[0.012, 5.0], [0.0, 0.0, 1.199_999_998e-3]), // 0.012·L(0.1, 5)/5
     Row("warm-up", &[140e-6, 600.0], [0.0, 0.0, 9.727_683_171e-6]), // 140 µg·exp(−1600/600)
@@ -41,7 +41,10 @@ const WORKED: [Row; 20] = [
     Row("g-hysteresis", &[20e-6, 200.0], [0.0, 0.0, -1.573_877_361e-5]), // −20 µg/g·L(0.01 g/s, 200)
     Row("reference-clock", &[0.5], [0.0, -0.016, 0.0]), // −80 Hz·0.5 ppm·400
     Row("self-heating", &[0.2, 900.0], [-3.380_266_308e-2, 0.0, 0.0]), // −0.2 °C·exp(−1600/900)
+    Row("expression", &[1e-4, 35.0], [0.0, 0.0, 5.655_404_285e-4]), // 100 µg/(V·°C/s)·60 V·L(0.1, 35)/35
 ];
+/// `channel · temperature_rate`, for effects whose formula comes with the calibration.
+const PROGRAM: [u8; 3] = [0x80, 0x03, 0x12];
 const WORKED_PRECISION: f64 = 1e-6;
 
 /// One instant: what is measured, and the level, g.
@@ -108,10 +111,15 @@ fn typical(about: &About) -> &'static [f64] {
     row.unwrap_or_else(|| panic!("`{}` needs a row in the table", about.name)).1
 }
 
+fn program(about: &About) -> &'static [u8] {
+    if about.takes_program() { &PROGRAM } else { &[] }
+}
+
 /// What an effect does at every moment, its memory taken along.
 fn deeds<R: Real>(about: &About, coefficients: &[f64], moments: &[Moment], real: fn(f64) -> R) -> Vec<Deed<R>> {
     let mut terms = Terms::<R>::new(10_000_000);
-    terms.push(about.id, 0, 1, coefficients.iter().map(|value| real(*value))).expect("the right coefficients");
+    let coefficients = coefficients.iter().map(|value| real(*value));
+    terms.push(about.id, 0, 1, coefficients, program(about)).expect("the right coefficients");
     let zeros = example::blob().scaling;
     let deed = |(sample, level_g): &Moment| {
         let (now, level_g) = (Observation::new(sample, &zeros), R::from_f32(*level_g));
@@ -150,7 +158,7 @@ fn every_effect_does_what_was_worked_out_on_paper() {
 }
 
 /// Names that are stable for ever.
-const STABLE: [&str; 20] = [
+const STABLE: [&str; 22] = [
     "thermal-lag",
     "thermal-gradient",
     "warm-up",
@@ -171,6 +179,8 @@ const STABLE: [&str; 20] = [
     "turn-on",
     "g-hysteresis",
     "reference-clock",
+    "self-heating",
+    "expression",
 ];
 
 #[test]
@@ -291,12 +301,18 @@ fn nothing_jumps_where_a_shape_or_a_location_moves() {
     }
 }
 
+/// The channel that it reads, if it reads one.
+fn channel(about: &About) -> Option<&'static str> {
+    about.channel.or(about.takes_program().then_some("supply_v"))
+}
+
 /// The example calibration with this effect instead of its own.
 fn blob_with(about: &About, coefficients: &[f64]) -> Blob {
     let coefficients: Vec<f32> = coefficients.iter().map(|value| *value as f32).collect();
+    let program: heapless::Vec<u8, MAX_PROGRAM> = program(about).iter().copied().collect();
     Blob {
-        channels: about.channel.into_iter().map(|name| name.try_into().expect("a short name")).collect(),
-        terms: [example::term(about.id, &coefficients)].into_iter().collect(),
+        channels: channel(about).into_iter().map(|name| name.try_into().expect("a short name")).collect(),
+        terms: [Term { program, ..example::term(about.id, &coefficients) }].into_iter().collect(),
         ..example::blob()
     }
 }
@@ -322,7 +338,7 @@ fn a_wrong_number_of_coefficients_and_a_missing_channel_are_refused() {
         }
         let mut blob = blob_with(about, typical(about));
         blob.channels.clear();
-        let missing = about.channel.map(|_| LoadError::Channel { effect: about.id });
+        let missing = channel(about).map(|_| LoadError::Channel { effect: about.id });
         assert_eq!(Compensator::load(&blob).err(), missing, "{}", about.name);
     }
 }

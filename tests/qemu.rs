@@ -6,7 +6,7 @@
 use firmware_core::Compensator;
 use firmware_sim::link::Link;
 use firmware_sim::virtual_faulty_line::{FaultyLine, LineFaults};
-use protocol::{Reading, Sample, Status};
+use protocol::{Blob, Reading, Sample, Status};
 use std::time::Duration;
 use tests::example;
 use tests::qemu::Microcontroller;
@@ -19,7 +19,11 @@ fn started(identity: &[u8], calibration: &[u8]) -> Link<Microcontroller> {
 }
 
 fn on_the_host(samples: &[Sample]) -> Vec<Reading> {
-    let mut compensator = Compensator::load(&example::blob()).expect("the example is sound");
+    on_the_host_with(&example::blob(), samples)
+}
+
+fn on_the_host_with(blob: &Blob, samples: &[Sample]) -> Vec<Reading> {
+    let mut compensator = Compensator::load(blob).expect("the example is sound");
     samples.iter().map(|sample| compensator.compensate(sample)).collect()
 }
 
@@ -29,6 +33,17 @@ fn the_microcontroller_gives_the_hosts_bits() {
     let mut link = started(example::SERIAL.as_bytes(), &[]);
     link.upload_blob(&example::blob()).expect("the example is sound");
     for (sample, expected) in samples.iter().zip(on_the_host(&samples)) {
+        let found = link.replay(sample).expect("an answer");
+        assert!(found.same_bits(&expected), "{sample:?}\nexpected {expected:?}\nfound    {found:?}");
+    }
+}
+
+#[test]
+fn the_microcontroller_gives_the_hosts_bits_of_a_users_own_expression() {
+    let (blob, samples) = (example::with_expression(), example::samples(500));
+    let mut link = started(example::SERIAL.as_bytes(), &[]);
+    link.upload_blob(&blob).expect("the example is sound");
+    for (sample, expected) in samples.iter().zip(on_the_host_with(&blob, &samples)) {
         let found = link.replay(sample).expect("an answer");
         assert!(found.same_bits(&expected), "{sample:?}\nexpected {expected:?}\nfound    {found:?}");
     }

@@ -1,5 +1,6 @@
 //! Claim: `docs/wire.md` says what the code does: its numbers, limits and example bytes are the code's.
 
+use firmware_core::program::{Input, Step};
 use protocol::limits;
 use protocol::{
     Decoder, Envelope, FrameError, Identity, InstrumentState, Reading, Refusal, Request, Response, Sample, Status,
@@ -61,7 +62,7 @@ fn responses() -> [Response; 6] {
     let serial = "EXAMPLE-1".try_into().expect("a short name");
     let provenance = Some(*b"exampl-1");
     [
-        Response::Identity(Identity { serial, blob_layout: 1, effects: 6 }),
+        Response::Identity(Identity { serial, blob_layout: 2, effects: 22 }),
         Response::State(InstrumentState { provenance, readings: 2500, raised: Status::SETTLING }),
         Response::Measured { sample: sample(), reading: reading() },
         Response::Reading(reading()),
@@ -98,10 +99,31 @@ fn every_flag_has_the_documented_bit() {
 }
 
 #[test]
+fn every_step_of_a_program_has_the_documented_byte() {
+    let byte = |text: &str| u8::from_str_radix(text.strip_prefix("0x")?, 16).ok();
+    let documented: BTreeMap<u8, String> =
+        rows("Program").iter().filter_map(|row| Some((byte(row.first()?)?, row.get(1)?.clone()))).collect();
+    let last =
+        |step: &Step| format!("{step:?}").trim_end_matches(')').rsplit('(').next().unwrap_or_default().to_owned();
+    let name = |step: Step| match step {
+        Step::Constant(_) => "Constant".to_owned(),
+        Step::Read(Input::Channel(_)) => "Channel".to_owned(),
+        _ => last(&step),
+    };
+    // A channel's index is in its byte, a constant's number behind it.
+    let known = |byte: &u8| Some((*byte, name(Step::next(&[*byte, 0, 0, 0, 0])?.0)));
+    let known: BTreeMap<u8, String> = (0..=0x80).filter_map(|byte| known(&byte)).collect();
+    assert_eq!(documented, known);
+    let channels = (0x81..=0xFF).filter(|byte| Step::next(&[*byte]).is_some()).count();
+    assert_eq!(channels + 1, limits::MAX_CHANNELS);
+}
+
+#[test]
 fn every_limit_has_the_documented_value() {
     let table = [
         ("MAX_TERMS", limits::MAX_TERMS),
         ("MAX_PARAMETERS", limits::MAX_PARAMETERS),
+        ("MAX_PROGRAM", limits::MAX_PROGRAM),
         ("MAX_CHANNELS", limits::MAX_CHANNELS),
         ("MAX_NAME", limits::MAX_NAME),
         ("MAX_BLOB", limits::MAX_BLOB),

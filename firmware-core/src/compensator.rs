@@ -3,6 +3,7 @@
 use crate::effect::Disturbance;
 use crate::network::Network;
 use crate::observe::{Observation, Scale};
+use crate::program::ProgramError;
 use crate::real::Real;
 use crate::terms::Terms;
 use core::fmt;
@@ -28,6 +29,13 @@ pub enum LoadError {
         /// The effect's number.
         effect: u16,
     },
+    /// The effect's program can't be run.
+    Program {
+        /// The effect's number.
+        effect: u16,
+        /// Why.
+        why: ProgramError,
+    },
     /// More effects than the instrument has room for.
     TooManyEffects,
     /// A weight, coefficient or scale is infinite or not a number, or an input gain is not positive.
@@ -51,6 +59,7 @@ impl fmt::Display for LoadError {
                 write!(f, "effect number {effect} takes {expected} coefficients, the blob has {found}")
             }
             Self::Channel { effect } => write!(f, "effect number {effect} uses a channel that the blob doesn't name"),
+            Self::Program { effect, why } => write!(f, "the program of effect number {effect} can't be run: {why}"),
             Self::TooManyEffects => write!(f, "more effects than the instrument has room for"),
             Self::Number => write!(f, "a weight, coefficient or scale is not a usable number"),
             Self::Domain => write!(f, "the calibrated domain is empty"),
@@ -132,9 +141,9 @@ impl<R: Real> Compensator<R> {
             return Err(LoadError::Domain);
         }
         let mut terms = Terms::new(blob.timing.max_gap_us);
-        for Term { effect, channel, parameters } in &blob.terms {
+        for Term { effect, channel, parameters, program } in &blob.terms {
             let parameters = parameters.iter().copied().map(R::from_f32);
-            terms.push(*effect, usize::from(*channel), blob.channels.len(), parameters)?;
+            terms.push(*effect, usize::from(*channel), blob.channels.len(), parameters, program)?;
         }
         Ok(Self {
             scaling: blob.scaling,

@@ -9,6 +9,7 @@ mod aging;
 #[cfg(test)]
 mod bench;
 mod cross_axis;
+mod expression;
 mod g_hysteresis;
 mod humidity;
 mod lock_in;
@@ -31,6 +32,7 @@ mod warm_up;
 
 use crate::memory::Memory;
 use crate::observe::Observation;
+use crate::program::Program;
 use crate::real::Real;
 use core::ops::AddAssign;
 use protocol::limits::MAX_PARAMETERS;
@@ -55,6 +57,11 @@ pub trait Effect<R: Real>: Sync {
 
     /// Whether it needs the calendar age.
     fn needs_age(&self) -> bool {
+        false
+    }
+
+    /// Whether its formula is a program that comes with its coefficients.
+    fn takes_program(&self) -> bool {
         false
     }
 
@@ -91,6 +98,8 @@ pub struct Moment<'a, R> {
     pub channel: R,
     /// The static reading, g.
     pub level_g: R,
+    /// The effect's own formula, where it takes one.
+    pub program: &'a Program,
 }
 
 /// What effects do to the resonators.
@@ -150,6 +159,12 @@ impl About {
     #[must_use]
     pub fn is_on_device(&self) -> bool {
         find::<f32>(self.id).is_some()
+    }
+
+    /// Whether its formula is a user's own expression.
+    #[must_use]
+    pub fn takes_program(&self) -> bool {
+        find::<f32>(self.id).is_some_and(Effect::takes_program)
     }
 }
 
@@ -220,6 +235,7 @@ registry! {
     g_hysteresis::GHysteresis,
     reference_clock::ReferenceClock,
     self_heating::SelfHeating,
+    expression::Expression,
 }
 
 /// The highest effect number.

@@ -8,6 +8,7 @@
 //!                    Observation
 //!          memory.rs ─┐   │
 //!   effect/*.rs ─────→ terms.rs                what disturbs the resonators, what disturbs the output
+//!   program.rs ────────┤                       a user's own formula
 //!   network.rs ───────┴───┤ compensator.rs
 //!                      Reading                 acceleration and its status
 //!                         │ instrument.rs      the conversation: requests in, responses out
@@ -27,6 +28,7 @@ mod instrument;
 mod memory;
 mod network;
 mod observe;
+pub mod program;
 mod real;
 mod terms;
 mod thermometer;

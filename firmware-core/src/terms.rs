@@ -7,6 +7,7 @@ use crate::compensator::LoadError;
 use crate::effect::{self, Coefficients, Disturbance, Effect, Moment, Signal};
 use crate::memory::{Memory, State};
 use crate::observe::{Clock, Observation, Step};
+use crate::program::{Program, ProgramError, Reads};
 use crate::real::Real;
 use heapless::Vec;
 use protocol::limits::{MAX_CHANNELS, MAX_PARAMETERS, MAX_TERMS};
@@ -26,6 +27,8 @@ struct Term<R: Real> {
     effect: &'static dyn Effect<R>,
     coefficients: Coefficients<R>,
     channel: usize,
+    program: Program,
+    reads: Reads,
     memory: Memory<R>,
     state: State<R>,
     measured: bool,
@@ -45,29 +48,34 @@ impl<R: Real> Terms<R> {
         Self { clock: Clock::new(max_gap_us), last_level_g: R::ZERO, terms: Vec::new() }
     }
 
-    /// Adds the effect of number `id`, which follows entry `channel` of `channels` if it follows one.
+    /// Adds the effect of number `id`, which follows entry `channel` of `channels` if it follows one, and whose
+    /// formula is `program` if it takes one.
     ///
     /// # Errors
-    /// [`LoadError`] if it is unknown, takes other coefficients, or there is no room.
+    /// [`LoadError`] if it is unknown, takes other coefficients, its program can't be run, or there is no room.
     pub fn push(
         &mut self,
         id: u16,
         channel: usize,
         channels: usize,
         parameters: impl ExactSizeIterator<Item = R>,
+        program: &[u8],
     ) -> Result<(), LoadError> {
         let effect = effect::find::<R>(id).ok_or(LoadError::UnknownEffect(id))?;
         let (found, expected) = (parameters.len(), effect.coefficients());
         if found != expected {
             return Err(LoadError::Coefficients { effect: id, found, expected });
         }
-        if effect.signal() == Signal::Channel && channel >= channels.min(MAX_CHANNELS) {
+        let program = checked(effect, program).map_err(|why| LoadError::Program { effect: id, why })?;
+        let reads = reads(effect, channel, &program).ok_or(LoadError::Channel { effect: id })?;
+        if u32::from(reads.channels) >> channels.min(MAX_CHANNELS) != 0 {
             return Err(LoadError::Channel { effect: id });
         }
         let mut coefficients = [R::ZERO; MAX_PARAMETERS];
         coefficients.iter_mut().zip(parameters).for_each(|(slot, value)| *slot = value);
-        let memory = effect.memory(&coefficients);
-        let term = Term { effect, coefficients, channel, memory, state: State::REST, measured: false };
+        let memory = if reads.past { effect.memory(&coefficients) } else { Memory::None };
+        let (state, measured) = (State::REST, false);
+        let term = Term { effect, coefficients, channel, program, reads, memory, state, measured };
         self.terms.push(term).map_err(|_| LoadError::TooManyEffects)
     }
 
@@ -136,8 +144,11 @@ impl<R: Real> Term<R> {
 
     /// Whether the sample has what this effect depends on.
     fn is_measured(&self, sample: &Sample) -> bool {
-        let aged = !self.effect.needs_age() || sample.age_s.is_some();
-        aged && (self.effect.signal() != Signal::Channel || self.channel_of(sample) != Sample::NOT_MEASURED)
+        let aged = !self.reads.age || sample.age_s.is_some();
+        let missing = |(channel, value): (usize, &i64)| {
+            u32::from(self.reads.channels) >> channel & 1 != 0 && *value == Sample::NOT_MEASURED
+        };
+        aged && !sample.channels.iter().enumerate().any(missing)
     }
 
     fn channel_of(&self, sample: &Sample) -> i64 {
@@ -155,12 +166,13 @@ impl<R: Real> Term<R> {
         }
     }
 
-    fn moment<'a>(&self, now: &'a Observation<R>, level_g: R) -> Moment<'a, R> {
+    fn moment<'a>(&'a self, now: &'a Observation<R>, level_g: R) -> Moment<'a, R> {
         Moment {
             now,
             departure: self.state.departure(),
             channel: now.channels.get(self.channel).copied().unwrap_or(R::ZERO),
             level_g,
+            program: &self.program,
         }
     }
 
@@ -170,6 +182,26 @@ impl<R: Real> Term<R> {
         status.set(Status::CHANNEL_MISSING, !self.measured);
         status
     }
+}
+
+/// The program of an effect that takes one, and of one that takes none.
+fn checked<R: Real>(effect: &dyn Effect<R>, program: &[u8]) -> Result<Program, ProgramError> {
+    match (effect.takes_program(), program) {
+        (true, code) => Program::new(code),
+        (false, []) => Ok(Program::NONE),
+        (false, _) => Err(ProgramError::Surplus),
+    }
+}
+
+/// What a sample must have for an effect to be computed; `None` if no sample has that channel.
+fn reads<R: Real>(effect: &dyn Effect<R>, channel: usize, program: &Program) -> Option<Reads> {
+    if effect.takes_program() {
+        return Some(program.reads());
+    }
+    let followed = effect.signal() == Signal::Channel;
+    let bit = u32::try_from(channel).ok().and_then(|channel| 1_u8.checked_shl(channel));
+    let channels = if followed { bit? } else { 0 };
+    Some(Reads { past: true, age: effect.needs_age(), channels })
 }
 
 fn seconds<R: Real>(us: u64) -> R {

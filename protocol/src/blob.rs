@@ -10,7 +10,7 @@
 //! The checks run in that order, so a reader of a newer layout is told so and not "corrupted".
 
 use crate::checksum::crc32;
-use crate::limits::{MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_PARAMETERS, MAX_TERMS};
+use crate::limits::{MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_PARAMETERS, MAX_PROGRAM, MAX_TERMS};
 use crate::weights::Weights;
 use core::fmt;
 use heapless::{String, Vec};
@@ -89,6 +89,8 @@ pub struct Term {
     pub channel: u8,
     /// Coefficients and time constants in the effect's own order and units.
     pub parameters: Vec<f32, MAX_PARAMETERS>,
+    /// Formula of an effect that the calibration brings along; empty where the effect has its own.
+    pub program: Vec<u8, MAX_PROGRAM>,
 }
 
 /// Why bytes are no calibration.
@@ -130,7 +132,7 @@ impl fmt::Display for BlobError {
             Self::Truncated { found, expected } => write!(f, "truncated: {found} bytes, expected {expected}"),
             Self::NotABlob => write!(f, "not a calibration blob: it does not begin with \"TPCO\""),
             Self::Layout { found, supported } => {
-                write!(f, "layout version {found}, this reader understands {supported}")
+                write!(f, "layout version {found} is not supported, only {supported} is: export the model again")
             }
             Self::Checksum { computed, stored } => {
                 write!(f, "corrupted: checksum {computed:#010x}, stored {stored:#010x}")
@@ -145,7 +147,7 @@ impl core::error::Error for BlobError {}
 
 impl Blob {
     /// The layout version that this crate reads and writes.
-    pub const LAYOUT: u16 = 1;
+    pub const LAYOUT: u16 = 2;
 
     /// Writes the blob into `buffer` and returns the bytes used.
     ///

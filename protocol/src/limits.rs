@@ -8,6 +8,8 @@ pub const WEIGHTS: usize = 2 * HIDDEN + HIDDEN + HIDDEN + 1;
 pub const MAX_TERMS: usize = 8;
 /// Coefficients of one effect term.
 pub const MAX_PARAMETERS: usize = 6;
+/// Bytes of one effect term's program.
+pub const MAX_PROGRAM: usize = 32;
 /// Auxiliary channels (supply voltage, pressure, …) of one sample.
 pub const MAX_CHANNELS: usize = 8;
 /// Bytes of a channel's name.

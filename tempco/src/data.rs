@@ -5,13 +5,20 @@ use clap::Args;
 use std::path::PathBuf;
 use trainer::campaign::{Campaign, HoldOut, Measured, ReadOptions};
 
-/// Where the measurements are and how to read them.
+/// Where the measurements are, and how to read them.
 #[derive(Args)]
 pub struct Data {
     /// Campaign: CSV files, or folders of them
     #[arg(required = true, value_name = "DATA")]
     pub files: Vec<PathBuf>,
 
+    #[command(flatten)]
+    reading: Reading,
+}
+
+/// How to read measurements.
+#[derive(Args)]
+pub struct Reading {
     /// Reads a column under another name, with a factor and an offset if need be: `delta_f_hz=FreqDiff`, `time_s=t_ms*0.001`
     #[arg(long, value_name = "NAME=COLUMN")]
     pub map: Vec<String>,
@@ -47,6 +54,18 @@ pub struct Data {
 
 impl Data {
     pub fn read(&self) -> Result<Campaign, Failure> {
+        self.reading.read(&self.files)
+    }
+
+    /// The same on a command line, to be typed again.
+    pub fn command_line(&self) -> String {
+        let files = self.files.iter().map(|file| quoted(&file.display().to_string()));
+        files.chain(self.reading.words()).collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl Reading {
+    pub fn read(&self, files: &[PathBuf]) -> Result<Campaign, Failure> {
         let mut options = ReadOptions {
             signal: measured(self.signal.as_ref(), self.signal_unit.as_ref()),
             reference: measured(self.reference.as_ref(), self.reference_unit.as_ref()),
@@ -62,12 +81,11 @@ impl Data {
             })?;
             options.map.push((name.trim().to_owned(), column.trim().to_owned()));
         }
-        Ok(Campaign::read(&self.files, &options)?)
+        Ok(Campaign::read(files, &options)?)
     }
 
-    /// The same on a command line, to be typed again.
-    pub fn command_line(&self) -> String {
-        let files = self.files.iter().map(|file| quoted(&file.display().to_string()));
+    /// The options that were given, as they are typed.
+    fn words(&self) -> impl Iterator<Item = String> {
         let list = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
         let one = [
             ("--signal", self.signal.clone()),
@@ -79,8 +97,7 @@ impl Data {
             ("--ignore", list(&self.ignore)),
         ];
         let maps = self.map.iter().map(|pair| ("--map", Some(pair.clone())));
-        let options = maps.chain(one).filter_map(|(name, value)| Some(format!("{name} {}", quoted(&value?))));
-        files.chain(options).collect::<Vec<_>>().join(" ")
+        maps.chain(one).filter_map(|(name, value)| Some(format!("{name} {}", quoted(&value?))))
     }
 }
 

@@ -9,6 +9,7 @@ mod failure;
 mod plot;
 mod progress;
 mod render;
+mod subject;
 mod table;
 
 use clap::Parser;

@@ -42,6 +42,20 @@ pub fn blob() -> Blob {
     }
 }
 
+/// The example with an effect of the user's own, whose program has every step that there is.
+#[must_use]
+pub fn with_expression() -> Blob {
+    // e^(−power_on_s/600) · √|supply_v − level_g| + temperature_rate² + departure + temperature_c/delta_f_hz · age_days
+    const PROGRAM: [u8; 26] = [
+        0x06, 0x00, 0x00, 0x00, 0x16, 0x44, 0x13, 0x20, 0x24, 0x80, 0x05, 0x11, 0x21, 0x23, 0x12, 0x03, 0x22, 0x02,
+        0x10, 0x10, 0x01, 0x04, 0x13, 0x07, 0x12, 0x10,
+    ];
+    let mut blob = blob();
+    let program = PROGRAM.iter().copied().collect();
+    blob.terms.push(Term { program, ..term(22, &[0.000_1, 35.0]) }).expect("room for one more");
+    blob
+}
+
 /// The example as it is stored.
 #[must_use]
 pub fn blob_bytes() -> Vec<u8> {
@@ -64,7 +78,7 @@ pub fn proof(weights: &Weights) -> u32 {
 /// One effect on channel 0.
 #[must_use]
 pub fn term(effect: u16, parameters: &[f32]) -> Term {
-    Term { effect, channel: 0, parameters: parameters.iter().copied().collect() }
+    Term { effect, channel: 0, parameters: parameters.iter().copied().collect(), program: heapless::Vec::new() }
 }
 
 fn name<const N: usize>(name: &str) -> heapless::String<N> {

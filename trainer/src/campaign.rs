@@ -30,6 +30,7 @@ mod tests;
 
 pub use check::Demand;
 pub use error::{CampaignError, Column, Facts, Missing, Place};
+pub(crate) use nearest::nearest;
 pub use options::{Measured, ReadOptions};
 pub use split::{Basis, HoldOut, Split};
 
@@ -159,7 +160,7 @@ impl Campaign {
                 format!("a channel {name}"),
             ),
             channel: name.to_owned(),
-            nearest: nearest::nearest(name, &self.channels),
+            nearest: nearest(name, &self.channels),
         })
     }
 }

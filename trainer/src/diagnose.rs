@@ -1,8 +1,19 @@
-//! PLACEHOLDER on this branch only; the real module replaces it.
+//! Which physical effect is missing.
 
 mod answer;
+mod candidate;
+mod case;
+mod evidence;
+mod instrument;
+mod layout;
+mod noise_search;
+mod search;
+mod sum_channel;
+mod whitening;
 
 pub use answer::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexplained, Unobservable, Verdict};
+
+mod judge;
 
 use crate::campaign::Campaign;
 use crate::model::Model;
@@ -15,9 +26,15 @@ pub enum DiagnoseError {
     /// Stopped.
     #[error("cancelled")]
     Cancelled,
+    /// The residual's noise can't be told.
+    #[error("the noise can't be told from these measurements: no two neighbouring rows share a position")]
+    NoNoise,
 }
 
 /// Which physical effects `model` lacks, as far as `campaign` can tell.
-pub fn diagnose(_model: &Model, _campaign: &Campaign, _progress: &dyn Progress) -> Result<Diagnosis, DiagnoseError> {
-    Err(DiagnoseError::Cancelled)
+///
+/// # Errors
+/// [`DiagnoseError`] says what is missing.
+pub fn diagnose(model: &Model, campaign: &Campaign, progress: &dyn Progress) -> Result<Diagnosis, DiagnoseError> {
+    judge::judge(model, campaign, progress)
 }

@@ -1,11 +1,15 @@
 //! A compensation model: a text file that a person can diff.
 
-use firmware_core::{Compensator, LoadError, Network, effect};
-use protocol::limits::{HIDDEN, MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_PARAMETERS, MAX_TERMS};
+mod fitted_effect;
+
+pub use fitted_effect::ModelEffect;
+
+use crate::expression::ExpressionError;
+use firmware_core::{Compensator, LoadError, Network};
+use protocol::limits::{HIDDEN, MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_TERMS};
 use protocol::{Blob, Domain, Scaling, Term, Timing, Weights};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -112,19 +116,6 @@ pub struct ModelNetwork {
     pub output_bias: f32,
 }
 
-/// One effect with its fitted coefficients.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ModelEffect {
-    /// Name of the effect.
-    pub name: String,
-    /// The auxiliary channel that it follows.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub channel: Option<String>,
-    /// Coefficients by name.
-    pub parameters: BTreeMap<String, f64>,
-}
-
 /// Why there is no model.
 #[derive(Debug, Error)]
 pub enum ModelError {
@@ -181,6 +172,17 @@ pub enum DeviceLimit {
         /// The effect.
         effect: String,
     },
+    /// An effect of the user's own doesn't say what it depends on, or another one does.
+    #[error("effect `{effect}` {wrong}")]
+    Expression {
+        /// The effect.
+        effect: String,
+        /// What is wrong.
+        wrong: &'static str,
+    },
+    /// An expression is wrong for the model's channels.
+    #[error(transparent)]
+    Text(#[from] ExpressionError),
     /// Too many of something.
     #[error("{what}: at most {most}")]
     TooMany {
@@ -317,35 +319,6 @@ impl ModelDomain {
     const fn to_wire(self) -> Domain {
         let ([f_low, f_high], [t_low, t_high]) = (self.delta_f_uhz, self.temperature_uc);
         Domain { delta_f_uhz: (f_low, f_high), temperature_uc: (t_low, t_high) }
-    }
-}
-
-impl ModelEffect {
-    fn to_term(&self, channels: &[String]) -> Result<Term, DeviceLimit> {
-        let about = effect::about(&self.name).ok_or_else(|| DeviceLimit::UnknownEffect(self.name.clone()))?;
-        let mut parameters: heapless::Vec<f32, MAX_PARAMETERS> = heapless::Vec::new();
-        for parameter in about.parameters {
-            let value = self.parameters.get(parameter.name).ok_or_else(|| self.wrong_coefficients(about))?;
-            parameters.push(*value as f32).map_err(|_| self.wrong_coefficients(about))?;
-        }
-        if self.parameters.len() != about.parameters.len() {
-            return Err(self.wrong_coefficients(about));
-        }
-        let channel = match (&self.channel, about.channel) {
-            (None, None) => 0,
-            (Some(name), Some(_)) => channels
-                .iter()
-                .position(|channel| channel == name)
-                .ok_or_else(|| DeviceLimit::Channel { effect: self.name.clone() })?,
-            _ => return Err(DeviceLimit::Channel { effect: self.name.clone() }),
-        };
-        Ok(Term { effect: about.id, channel: u8::try_from(channel).unwrap_or(u8::MAX), parameters })
-    }
-
-    fn wrong_coefficients(&self, about: &effect::About) -> DeviceLimit {
-        let expected: Vec<_> = about.parameters.iter().map(|parameter| parameter.name).collect();
-        let found: Vec<_> = self.parameters.keys().map(String::as_str).collect();
-        DeviceLimit::Coefficients { effect: self.name.clone(), found: found.join(", "), expected: expected.join(", ") }
     }
 }
 

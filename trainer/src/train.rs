@@ -11,12 +11,13 @@ pub use baseline::Baseline;
 pub use settings::{Anchoring, EffectChoice, Method, TrainSettings};
 
 use crate::campaign::{Campaign, Run, Split};
+use crate::expression::ExpressionError;
 use crate::fit::effects::Coefficients;
 use crate::fit::firefly::FireflyError;
 use crate::fit::gradient_descent::DescentError;
 use crate::fit::polynomial::Polynomial;
 use crate::model::Model;
-use crate::progress::Progress;
+use crate::progress::{Progress, Quiet};
 use crate::residuals::{Residuals, arranged, residuals};
 use protocol::Weights;
 use task::Task;
@@ -79,6 +80,17 @@ pub enum TrainError {
         /// Its channel.
         channel: String,
     },
+    /// An effect of the user's own doesn't say what it depends on.
+    #[error("effect `expression` needs to be told what it depends on: --expression \"supply_v * temperature_rate\"")]
+    NoExpression,
+    /// It does, and that is wrong.
+    #[error(transparent)]
+    Expression(#[from] ExpressionError),
+    /// What it depends on doesn't vary.
+    #[error(
+        "expression `{0}` is the same in every row of the training runs, or has no value there: nothing can be learnt of it"
+    )]
+    Constant(String),
     /// The paper's methods train a network alone.
     #[error("effects can be fitted with the second-order method only")]
     EffectsNeedSecondOrder,
@@ -115,6 +127,14 @@ impl Search {
         let restarts = candidates.iter().map(|candidate| candidate.restart).collect();
         Self { restarts, best: candidates.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost)) }
     }
+}
+
+/// Whether these settings could be trained, found out without training.
+///
+/// # Errors
+/// [`TrainError`] says what is missing.
+pub fn check(campaign: &Campaign, split: &Split, settings: &TrainSettings) -> Result<(), TrainError> {
+    Task::new(campaign, split, settings, &Quiet).map(|_| ())
 }
 
 /// Trains on the split's training runs.

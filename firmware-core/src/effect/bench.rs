@@ -2,6 +2,7 @@
 
 use super::{Disturbance, Effect, Moment};
 use crate::observe::Observation;
+use crate::program::Program;
 use protocol::limits::{MAX_CHANNELS, MAX_PARAMETERS};
 
 #[derive(Clone, Copy)]
@@ -50,15 +51,16 @@ impl Bench {
     }
 
     pub fn bias_g(&self, effect: &impl Effect<f64>, coefficients: &[f64]) -> f64 {
-        effect.bias_g(&self.moment(), &padded(coefficients))
+        effect.bias_g(&self.moment(&Program::NONE), &padded(coefficients))
     }
 
     pub fn disturbance(&self, effect: &impl Effect<f64>, coefficients: &[f64]) -> Disturbance<f64> {
-        effect.disturb(&self.moment(), &padded(coefficients))
+        effect.disturb(&self.moment(&Program::NONE), &padded(coefficients))
     }
 
-    fn moment(&self) -> Moment<'_, f64> {
-        Moment { now: &self.now, departure: self.departure, channel: self.channel, level_g: self.level_g }
+    pub const fn moment<'a>(&'a self, program: &'a Program) -> Moment<'a, f64> {
+        let Self { now, departure, channel, level_g } = self;
+        Moment { now, departure: *departure, channel: *channel, level_g: *level_g, program }
     }
 }
 

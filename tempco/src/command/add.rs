@@ -1,27 +1,25 @@
-//! `tempco add model.toml EFFECT DATA -o better.toml`
+//! `tempco add model.toml EFFECT DATA -o better.toml`, or with `--expression TEXT` for EFFECT
 
 use super::change::{Change, ladder};
-use crate::data::Data;
 use crate::failure::{Answer, Failure};
+use crate::subject::Subject;
 use clap::Args;
 use std::path::PathBuf;
 use trainer::train::EffectChoice;
 
 /// Adds a physical effect to a model, retrains everything together, and shows how far the residual falls.
 #[derive(Args)]
-#[command(after_help = "Example:  tempco add model.toml thermal-lag campaign.csv -o better.toml")]
+#[command(after_help = "Example:  tempco add model.toml thermal-lag campaign.csv -o better.toml
+          tempco add model.toml --expression \"supply_v * temperature_rate\" campaign.csv -o b.toml")]
 pub struct Add {
     /// Model file
     model: PathBuf,
 
-    /// Effect to add (`tempco effects` lists them)
-    effect: String,
-
     #[command(flatten)]
-    data: Data,
+    subject: Subject,
 
     /// The channel that the effect follows, where not its usual one
-    #[arg(long, value_name = "COLUMN")]
+    #[arg(long, value_name = "COLUMN", conflicts_with = "expression")]
     channel: Option<String>,
 
     /// Where to write the new model
@@ -35,12 +33,13 @@ pub struct Add {
 
 impl Add {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let change = Change::read(&self.model, &self.data)?;
+        let change = Change::read(&self.model, &self.subject)?;
         let mut effects = EffectChoice::of(&change.model);
-        if effects.iter().any(|choice| choice.name == self.effect) {
-            return Err(Failure::new(format_args!("the model has the effect `{}` already", self.effect)));
+        let new = EffectChoice { channel: self.channel.clone(), ..self.subject.effect() };
+        if effects.iter().any(|choice| choice.is_same(&new)) {
+            return Err(Failure::new(format_args!("the model has the effect `{}` already", new.title())));
         }
-        effects.push(EffectChoice { channel: self.channel.clone(), ..EffectChoice::named(&self.effect) });
+        effects.push(new);
         ladder(&change, &effects, &self.output, self.json)
     }
 }

@@ -1,15 +1,15 @@
 //! What `add` and `remove` share: retrain a model with other effects, print the ladder of residuals.
 
 use super::train::train_with_bar;
-use crate::data::Data;
 use crate::failure::{Answer, Failure};
 use crate::render;
+use crate::subject::Subject;
 use crate::table::Table;
 use std::path::Path;
 use trainer::campaign::{Campaign, HoldOut, Split};
 use trainer::compare::compare;
 use trainer::model::{Model, Provenance};
-use trainer::train::{EffectChoice, TrainSettings, Trained};
+use trainer::train::{EffectChoice, TrainSettings, check};
 
 /// A model and the campaign to retrain it on.
 pub struct Change {
@@ -20,9 +20,9 @@ pub struct Change {
 
 impl Change {
     /// Reads both, and holds out the runs that the model holds out.
-    pub fn read(model: &Path, data: &Data) -> Result<Self, Failure> {
+    pub fn read(model: &Path, subject: &Subject) -> Result<Self, Failure> {
         let model = Model::read(model)?;
-        let campaign = data.read()?;
+        let campaign = subject.read()?;
         let known = |name: &String| campaign.runs.iter().any(|run| run.name == *name);
         let names: Vec<String> = model.provenance.held_out_runs.iter().filter(|name| known(name)).cloned().collect();
         let choice = match names.as_slice() {
@@ -34,21 +34,21 @@ impl Change {
         Ok(Self { model, campaign, split })
     }
 
-    fn train(&self, effects: Vec<EffectChoice>, what: &str) -> Result<Trained, Failure> {
-        let Provenance { seed, restarts, .. } = self.model.provenance.clone();
-        let settings =
-            TrainSettings { restarts, serial: self.model.serial.clone(), effects, ..TrainSettings::new(seed) };
-        train_with_bar(&self.campaign, &self.split, &settings, what)
+    fn settings(&self, effects: &[EffectChoice]) -> TrainSettings {
+        let (Provenance { seed, restarts, .. }, serial) = (&self.model.provenance, self.model.serial.clone());
+        TrainSettings { restarts: *restarts, serial, effects: effects.to_vec(), ..TrainSettings::new(*seed) }
     }
 }
 
 /// Trains from the bare network up, one effect more on each rung, and writes the last model.
 pub fn ladder(change: &Change, effects: &[EffectChoice], output: &Path, json: bool) -> Result<Answer, Failure> {
+    // What is misspelt should not be found out after minutes of training.
+    check(&change.campaign, &change.split, &change.settings(effects))?;
     let mut rungs = Vec::new();
     let mut top = None;
     for count in 0..=effects.len() {
-        let name = count.checked_sub(1).map_or("network alone", |last| effects[last].name.as_str()).to_owned();
-        let trained = change.train(effects[..count].to_vec(), &name)?;
+        let name = count.checked_sub(1).map_or("network alone", |last| effects[last].title()).to_owned();
+        let trained = train_with_bar(&change.campaign, &change.split, &change.settings(&effects[..count]), &name)?;
         let comparison = compare(&trained.model, &change.campaign)?;
         rungs.push((name, comparison.residual_ug));
         top = Some((trained, comparison));
@@ -68,7 +68,7 @@ pub fn ladder(change: &Change, effects: &[EffectChoice], output: &Path, json: bo
         for effect in &trained.model.effects {
             let values: Vec<String> =
                 effect.parameters.iter().map(|(name, value)| format!("{name} = {value:.4e}")).collect();
-            anstream::println!("  {}: {}", effect.name, values.join(", "));
+            anstream::println!("  {}: {}", effect.title(), values.join(", "));
         }
         anstream::println!("\n{}Model written to {}", render::comparison(&comparison), output.display());
     }

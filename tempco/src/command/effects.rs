@@ -4,6 +4,7 @@ use crate::failure::{Answer, Failure};
 use clap::Args;
 use firmware_core::effect::{ALL, About, about};
 use std::fmt::Write;
+use trainer::expression::{FUNCTIONS, NAMES};
 
 /// Lists the physical effects that a model can contain, or explains one.
 #[derive(Args)]
@@ -45,5 +46,17 @@ fn explain(about: &About) -> String {
             parameter.name, parameter.unit, parameter.low, parameter.high
         );
     }
+    if about.takes_program() {
+        let _ = writeln!(text, "\n  An expression joins these with + - * / ^2 and parentheses:");
+        for (name, meaning, _) in NAMES {
+            let _ = writeln!(text, "    {name:22}  {meaning}");
+        }
+        let functions: Vec<String> = FUNCTIONS.iter().map(|(name, _)| format!("{name}(…)")).collect();
+        let _ = writeln!(text, "    {:22}  every other column of the campaign, such as supply_v", "a channel");
+        let _ = writeln!(text, "    {:22}  of any of these; and numbers", functions.join(" "));
+        let _ = writeln!(text, "\n  tempco add model.toml --expression \"{EXAMPLE}\" campaign.csv -o better.toml");
+    }
     text
 }
+
+const EXAMPLE: &str = "supply_v * temperature_rate";

@@ -9,6 +9,7 @@ use firmware_core::effect::ALL;
 use protocol::Blob;
 use std::path::Path;
 use trainer::campaign::Campaign;
+use trainer::expression::print;
 use trainer::model::Model;
 
 /// Shows what a blob, an Intel HEX file, a model or a campaign contains, and whether a device would take it.
@@ -71,7 +72,8 @@ fn blob(bytes: &[u8]) -> Result<Answer, Failure> {
     );
     for term in &blob.terms {
         let name = ALL.iter().find(|about| about.id == term.effect).map_or("unknown effect", |about| about.name);
-        anstream::println!("  effect {name} {:?}", term.parameters.as_slice());
+        let text = print(&term.program, &blob.channels).map(|text| format!(" {text}")).unwrap_or_default();
+        anstream::println!("  effect {name}{text} {:?}", term.parameters.as_slice());
     }
     Ok(match Compensator::load(&blob) {
         Ok(_) => {

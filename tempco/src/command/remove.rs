@@ -1,8 +1,8 @@
-//! `tempco remove model.toml EFFECT DATA -o simpler.toml`
+//! `tempco remove model.toml EFFECT DATA -o simpler.toml`, or with `--expression TEXT` for EFFECT
 
 use super::change::{Change, ladder};
-use crate::data::Data;
 use crate::failure::{Answer, Failure};
+use crate::subject::Subject;
 use clap::Args;
 use std::path::PathBuf;
 use trainer::train::EffectChoice;
@@ -14,11 +14,8 @@ pub struct Remove {
     /// Model file
     model: PathBuf,
 
-    /// Effect to take out
-    effect: String,
-
     #[command(flatten)]
-    data: Data,
+    subject: Subject,
 
     /// Where to write the new model
     #[arg(short, long, value_name = "FILE")]
@@ -31,16 +28,16 @@ pub struct Remove {
 
 impl Remove {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let change = Change::read(&self.model, &self.data)?;
+        let change = Change::read(&self.model, &self.subject)?;
         let mut effects = EffectChoice::of(&change.model);
         let before = effects.len();
-        effects.retain(|choice| choice.name != self.effect);
+        let unwanted = self.subject.effect();
+        effects.retain(|choice| !choice.is_same(&unwanted));
         if effects.len() == before {
-            let names: Vec<&str> = change.model.effects.iter().map(|effect| effect.name.as_str()).collect();
-            return Err(Failure::new(format_args!("the model has no effect `{}`", self.effect)).help(format_args!(
-                "it has: {}",
-                if names.is_empty() { "none".to_owned() } else { names.join(", ") }
-            )));
+            let names: Vec<&str> = effects.iter().map(EffectChoice::title).collect();
+            return Err(Failure::new(format_args!("the model has no effect `{}`", unwanted.title())).help(
+                format_args!("it has: {}", if names.is_empty() { "none".to_owned() } else { names.join(", ") }),
+            ));
         }
         ladder(&change, &effects, &self.output, self.json)
     }

@@ -4,7 +4,7 @@
 const SHARED_BEGINNING: usize = 3;
 
 /// The candidate that is most like `name`, if any is at all.
-pub(super) fn nearest(name: &str, candidates: &[String]) -> Option<String> {
+pub(crate) fn nearest(name: &str, candidates: &[String]) -> Option<String> {
     let wanted = letters(name);
     let likeness = |candidate: &&String| {
         let found = letters(candidate);

@@ -112,7 +112,7 @@ fn is_near(a: i64, b: i64) -> bool {
     a.abs_diff(b) <= b.unsigned_abs() / 200
 }
 
-pub(super) fn mean(rows: &[Row], run: usize, scale: &InputScale) -> Datum {
+pub(crate) fn mean(rows: &[Row], run: usize, scale: &InputScale) -> Datum {
     let count = rows.len() as f64;
     let mut sum = Datum { x: 0.0, t: 0.0, reference_g: 0.0, weight: count, run };
     for row in rows {

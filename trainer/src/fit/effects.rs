@@ -8,14 +8,15 @@ use super::dataset::{InputScale, cells};
 use super::network::{Group, Rows, Tangent, ValueRow};
 use super::polynomial::Polynomial;
 use crate::campaign::Run;
+use crate::expression::Expression;
 use crate::noise::Components;
-use firmware_core::effect::{About, Role};
+use firmware_core::effect::{About, Parameter, Role};
 use firmware_core::{Observation, Terms};
 use protocol::Scaling;
 use std::ops::Range;
 
 /// An effect chosen for a model: which one, and which of the campaign's channels it follows.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Chosen {
     /// The effect.
     pub about: &'static About,
@@ -23,6 +24,65 @@ pub struct Chosen {
     pub channel: usize,
     /// Mean of that channel over the training runs: where [`Role::Origin`] counts from.
     pub origin: f64,
+    /// What an effect of the user's own depends on.
+    pub expression: Option<Expression>,
+    /// What amplitude 1 does over the training runs, RMS, g: an expression may have any unit, and the
+    /// optimiser should not notice. 1 where the unit is the effect's own.
+    pub size: f64,
+}
+
+impl Chosen {
+    /// An effect that follows no channel.
+    #[must_use]
+    pub const fn of(about: &'static About) -> Self {
+        Self { about, channel: 0, origin: 0.0, expression: None, size: 1.0 }
+    }
+
+    /// Whether it follows this channel of the campaign.
+    #[must_use]
+    pub fn follows(&self, channel: usize) -> bool {
+        match &self.expression {
+            Some(expression) => expression.follows(channel),
+            None => self.about.channel.is_some() && self.channel == channel,
+        }
+    }
+
+    /// The value of a coefficient that is not fitted: a fit can't tell an origin from the bias, and a time
+    /// constant means nothing to an expression that doesn't look back.
+    fn fixed(&self, parameter: &Parameter) -> Option<f64> {
+        let idle = self.expression.as_ref().is_some_and(|expression| expression.leaves_idle(parameter));
+        match parameter.role {
+            Role::Origin => Some(self.origin),
+            _ => idle.then_some(parameter.start),
+        }
+    }
+
+    /// The optimiser's parameter for a coefficient's value, and back.
+    fn parameter_of(&self, parameter: &Parameter, value: f64) -> f64 {
+        match parameter.role {
+            Role::Amplitude => value * self.size,
+            Role::Shape => value.ln(),
+            Role::Location | Role::Origin => value,
+        }
+    }
+
+    fn value_of(&self, parameter: &Parameter, free: f64) -> f64 {
+        let value = match parameter.role {
+            Role::Amplitude => free / self.size,
+            Role::Shape => free.exp(),
+            Role::Location | Role::Origin => free,
+        };
+        value.clamp(parameter.low, parameter.high)
+    }
+
+    /// What amplitude 1 adds to the bias at every sample of a run, g.
+    #[must_use]
+    pub fn course_g(&self, run: &Run, max_gap_us: u32) -> Vec<f64> {
+        let value = |parameter: &Parameter| if parameter.role == Role::Amplitude { 1.0 } else { parameter.start };
+        let values = vec![self.about.parameters.iter().map(value).collect()];
+        let deeds = deeds(run, std::slice::from_ref(self), &Coefficients { values }, max_gap_us);
+        deeds.unwrap_or_default().iter().map(|deed| deed.bias_g).collect()
+    }
 }
 
 /// Coefficients of several effects, and the optimiser's view of them.
@@ -33,18 +93,13 @@ pub struct Coefficients {
 }
 
 impl Coefficients {
-    /// The optimiser's parameters: amplitudes as they are, shapes as logarithms, origins left out.
+    /// The optimiser's parameters: amplitudes in g, shapes as logarithms, what is not fitted left out.
     #[must_use]
     pub fn to_parameters(&self, effects: &[Chosen]) -> Vec<f64> {
         let mut parameters = Vec::new();
         for (effect, values) in effects.iter().zip(&self.values) {
-            for (about, value) in effect.about.parameters.iter().zip(values) {
-                match about.role {
-                    Role::Amplitude | Role::Location => parameters.push(*value),
-                    Role::Shape => parameters.push(value.ln()),
-                    Role::Origin => {}
-                }
-            }
+            let free = effect.about.parameters.iter().zip(values).filter(|(about, _)| effect.fixed(about).is_none());
+            parameters.extend(free.map(|(about, value)| effect.parameter_of(about, *value)));
         }
         parameters
     }
@@ -53,13 +108,9 @@ impl Coefficients {
     #[must_use]
     pub fn from_parameters(effects: &[Chosen], parameters: &[f64]) -> Self {
         let mut next = parameters.iter().copied();
-        let mut value = |effect: &Chosen, about: &firmware_core::effect::Parameter| {
-            let free = match about.role {
-                Role::Amplitude | Role::Location => next.next().unwrap_or_default(),
-                Role::Shape => next.next().unwrap_or_default().exp(),
-                Role::Origin => return effect.origin,
-            };
-            free.clamp(about.low, about.high)
+        let mut value = |effect: &Chosen, about: &Parameter| match effect.fixed(about) {
+            Some(fixed) => fixed,
+            None => effect.value_of(about, next.next().unwrap_or_default()),
         };
         let of = |effect: &Chosen| effect.about.parameters.iter().map(|about| value(effect, about)).collect();
         Self { values: effects.iter().map(of).collect() }
@@ -68,17 +119,37 @@ impl Coefficients {
 
 /// What the effects do at one sample.
 #[derive(Clone, Copy, Debug, Default)]
-struct Deed {
-    temperature_c: f64,
-    delta_f_hz: f64,
-    bias_g: f64,
+pub(crate) struct Deed {
+    /// Resonators minus thermometer, °C.
+    pub temperature_c: f64,
+    /// Frequency difference with the effects minus without, Hz.
+    pub delta_f_hz: f64,
+    /// Added to the output, g.
+    pub bias_g: f64,
+}
+
+impl Deed {
+    /// Both.
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        Self {
+            temperature_c: self.temperature_c + other.temperature_c,
+            delta_f_hz: self.delta_f_hz + other.delta_f_hz,
+            bias_g: self.bias_g + other.bias_g,
+        }
+    }
 }
 
 /// Runs the effects over a run, sample by sample; `None` if the core refuses the coefficients.
-fn deeds(run: &Run, effects: &[Chosen], coefficients: &Coefficients, max_gap_us: u32) -> Option<Vec<Deed>> {
+pub(crate) fn deeds(
+    run: &Run,
+    effects: &[Chosen],
+    coefficients: &Coefficients,
+    max_gap_us: u32,
+) -> Option<Vec<Deed>> {
     let mut terms = Terms::<f64>::new(max_gap_us);
     for (effect, values) in effects.iter().zip(&coefficients.values) {
-        terms.push(effect.about.id, effect.channel, usize::MAX, values.iter().copied()).ok()?;
+        let program = effect.expression.as_ref().map_or(&[][..], |expression| expression.code());
+        terms.push(effect.about.id, effect.channel, usize::MAX, values.iter().copied(), program).ok()?;
     }
     let deed = |row: &crate::campaign::Row| {
         let now = Observation::<f64>::new(&row.sample, &FROM_ZERO);
@@ -194,7 +265,7 @@ fn weigh(run: usize, cell: &Still, noise: &Components) -> ValueRow {
     ValueRow { x: cell.x, t: cell.t, y: 0.0, weight: noise.weight(run, samples), samples }
 }
 
-fn mean_deed(deeds: &[Deed]) -> Deed {
+pub(crate) fn mean_deed(deeds: &[Deed]) -> Deed {
     let count = deeds.len() as f64;
     deeds.iter().fold(Deed::default(), |sum, deed| Deed {
         temperature_c: sum.temperature_c + deed.temperature_c / count,
@@ -205,7 +276,8 @@ fn mean_deed(deeds: &[Deed]) -> Deed {
 
 impl Rows for MovedRows<'_> {
     fn parameters(&self) -> usize {
-        let free = |effect: &Chosen| effect.about.parameters.iter().filter(|about| about.role != Role::Origin).count();
+        let free =
+            |effect: &Chosen| effect.about.parameters.iter().filter(|about| effect.fixed(about).is_none()).count();
         self.effects.iter().map(free).sum()
     }
 

@@ -86,7 +86,7 @@ fn effect_starts(task: &Task) -> Vec<Vec<f64>> {
         let of = |(index, effect): (usize, &crate::fit::effects::Chosen)| {
             known(index).unwrap_or_else(|| {
                 let first = |about: &firmware_core::effect::Parameter| match about.role {
-                    Role::Amplitude => FIRST_AMPLITUDE,
+                    Role::Amplitude => FIRST_AMPLITUDE / effect.size,
                     Role::Shape => about.low * (about.high / about.low).powf(part),
                     Role::Origin => effect.origin,
                     Role::Location => about.low + (about.high - about.low) * part,

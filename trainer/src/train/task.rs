@@ -4,13 +4,14 @@ use super::baseline::Baseline;
 use super::settings::{EffectChoice, TrainSettings};
 use super::{Candidate, TrainError};
 use crate::campaign::{Campaign, Run, Split};
+use crate::expression::Expression;
 use crate::fit::dataset::{Datum, InputScale, merged};
 use crate::fit::effects::Chosen;
 use crate::fit::polynomial::Polynomial;
 use crate::model::{Model, ModelDomain, ModelEffect, ModelNetwork, ModelScaling, Provenance, Units};
-use crate::noise::{Components, Mean, sample_sigma_g};
+use crate::noise::{Components, Mean, rms, sample_sigma_g};
 use crate::progress::Progress;
-use firmware_core::effect;
+use firmware_core::effect::{self, Parameter};
 use protocol::Weights;
 
 /// What every method starts from.
@@ -98,10 +99,11 @@ impl<'a> Task<'a> {
     /// The auxiliary channels that the effects follow, each once.
     fn channels(&self, campaign: &Campaign) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
-        let used = self.effects.iter().filter(|effect| effect.about.channel.is_some());
-        for name in used.filter_map(|effect| campaign.channels.get(effect.channel)) {
-            if !names.contains(name) {
-                names.push(name.clone());
+        for effect in &self.effects {
+            for (channel, name) in campaign.channels.iter().enumerate() {
+                if effect.follows(channel) && !names.contains(name) {
+                    names.push(name.clone());
+                }
             }
         }
         names
@@ -148,7 +150,10 @@ fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) -> Result<C
     if !about.is_on_device() {
         return Err(TrainError::NotOnDevice(choice.name.clone()));
     }
-    let Some(usual) = about.channel else { return Ok(Chosen { about, channel: 0, origin: 0.0 }) };
+    if about.takes_program() {
+        return choose_expression(about, choice, campaign, runs);
+    }
+    let Some(usual) = about.channel else { return Ok(Chosen::of(about)) };
     let name = choice.channel.as_deref().unwrap_or(usual);
     let channel = campaign
         .channels
@@ -161,16 +166,39 @@ fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) -> Result<C
         .filter_map(|row| row.sample.channels.get(channel))
         .map(|micro| *micro as f64 * 1e-6)
         .collect();
-    Ok(Chosen { about, channel, origin: crate::metrics::mean(&values) })
+    Ok(Chosen { channel, origin: crate::metrics::mean(&values), ..Chosen::of(about) })
+}
+
+/// Reads the expression and finds out how large it is.
+fn choose_expression(
+    about: &'static effect::About,
+    choice: &EffectChoice,
+    campaign: &Campaign,
+    runs: &[&Run],
+) -> Result<Chosen, TrainError> {
+    let text = choice.expression.as_deref().ok_or(TrainError::NoExpression)?;
+    let expression = Some(Expression::parse(text, &campaign.channels)?);
+    let chosen = Chosen { expression, ..Chosen::of(about) };
+    let course_g: Vec<f64> = runs.iter().flat_map(|run| chosen.course_g(run, max_gap_us(runs))).collect();
+    let mean_g = crate::metrics::mean(&course_g);
+    let size = rms(&course_g);
+    let scatter = rms(course_g.iter().map(|value_g| value_g - mean_g).collect::<Vec<_>>().iter());
+    if scatter > size * LEAST_VARIATION {
+        Ok(Chosen { size, ..chosen })
+    } else {
+        Err(TrainError::Constant(text.to_owned()))
+    }
 }
 
 /// A fitted effect as the model file keeps it.
 fn fitted(effect: &Chosen, values: &[f64], campaign: &Campaign) -> ModelEffect {
-    let names = effect.about.parameters.iter().map(|parameter| parameter.name.to_owned());
+    let idle = |parameter: &Parameter| effect.expression.as_ref().is_some_and(|text| text.leaves_idle(parameter));
+    let named = effect.about.parameters.iter().zip(values).filter(|(parameter, _)| !idle(parameter));
     ModelEffect {
         name: effect.about.name.to_owned(),
         channel: effect.about.channel.and_then(|_| campaign.channels.get(effect.channel).cloned()),
-        parameters: names.zip(values.iter().copied()).collect(),
+        expression: effect.expression.as_ref().map(|expression| expression.text().to_owned()),
+        parameters: named.map(|(parameter, value)| (parameter.name.to_owned(), *value)).collect(),
     }
 }
 
@@ -178,5 +206,7 @@ fn fitted(effect: &Chosen, values: &[f64], campaign: &Campaign) -> ModelEffect {
 const GAP_INTERVALS: f64 = 30.0;
 /// Share of the half span by which the calibrated domain exceeds the training data.
 const DOMAIN_MARGIN: f64 = 0.02;
+/// What varies by less than this share of its size can't be told from the bias.
+const LEAST_VARIATION: f64 = 1e-6;
 /// Noise is never taken to be less than this, so that noiseless data give no division by zero, g.
 const LEAST_SIGMA_G: f64 = 1e-9;

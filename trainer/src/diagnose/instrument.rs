@@ -1,0 +1,195 @@
+//! The instrument as it is modelled now, in cells: what it reads wrong, and what retraining could make of that.
+
+use super::layout::{Cell, Layout};
+use super::sum_channel::{Response, response};
+use super::whitening::Columns;
+use crate::fit::effects::{Chosen, Coefficients, Deed, deeds, mean_deed};
+use crate::model::Model;
+use crate::noise::{rms, sample_sigma_g};
+use firmware_core::activation::{sigmoid, slope};
+use firmware_core::{Network, Scale};
+use nalgebra::DMatrix;
+use protocol::limits::HIDDEN;
+use rayon::prelude::*;
+
+/// g to µg.
+const UG: f64 = 1e6;
+/// Noise is never taken to be less, µg.
+const LEAST_UG: f64 = 1e-3;
+
+/// The static map and the effects that are known so far.
+pub(super) struct Instrument {
+    model: Model,
+    network: Network<f64>,
+    scale: Scale<f64>,
+}
+
+/// Effects with their coefficients.
+#[derive(Clone, Debug)]
+pub(super) struct Known {
+    /// The effects.
+    pub effects: Vec<Chosen>,
+    /// Their coefficients.
+    pub coefficients: Coefficients,
+}
+
+impl Known {
+    /// No effects.
+    pub const NONE: Self = Self { effects: Vec::new(), coefficients: Coefficients { values: Vec::new() } };
+
+    /// These and one more.
+    pub fn with(&self, effect: &Chosen, values: &[f64]) -> Self {
+        let mut known = self.clone();
+        known.effects.push(effect.clone());
+        known.coefficients.values.push(values.to_vec());
+        known
+    }
+
+    /// The same effects with other parameters, held within their bounds.
+    pub fn at(&self, parameters: &[f64]) -> Self {
+        let coefficients = Coefficients::from_parameters(&self.effects, parameters);
+        Self { effects: self.effects.clone(), coefficients }
+    }
+
+    /// Each by itself.
+    pub fn each(&self) -> impl Iterator<Item = Self> {
+        self.effects.iter().zip(&self.coefficients.values).map(|(effect, values)| Self::NONE.with(effect, values))
+    }
+
+    /// Those whose deeds say what happens to the sum of the frequencies.
+    pub fn told(&self) -> Self {
+        let told = self.each().filter(|one| response(one.effects[0].about) == Response::Told);
+        told.fold(Self::NONE, |all, one| all.with(&one.effects[0], &one.coefficients.values[0]))
+    }
+
+    /// These but the one at `index`.
+    pub fn without(&self, index: usize) -> Self {
+        let mut known = self.clone();
+        known.effects.remove(index);
+        known.coefficients.values.remove(index);
+        known
+    }
+}
+
+/// Mean deeds of the cells, run by run.
+pub(super) type Deeds = Vec<Vec<Deed>>;
+
+/// Highest powers of frequency difference and temperature, and of both together, by which a retrained map may differ.
+const POWERS: (usize, usize, usize) = (3, 5, 6);
+/// How far it may differ from such a polynomial, as a share of the network's own size.
+const FREEDOM: f64 = 0.03;
+/// Expected size of an output weight and of a hidden weight, as in training.
+const OUTPUT_SIZE: f64 = 10.0;
+/// And of a hidden one.
+const HIDDEN_SIZE: f64 = 1.0;
+
+impl Instrument {
+    /// The static map of `model`; its effects are not part of it.
+    pub fn new(model: &Model) -> Self {
+        let scaling = model.scaling.to_wire();
+        Self { network: Network::new(&model.weights()), scale: Scale::new(&scaling), model: model.clone() }
+    }
+
+    /// What the effects do in each cell.
+    pub fn deeds(&self, layout: &Layout, known: &Known) -> Deeds {
+        let of = |stretch: &super::layout::Stretch| {
+            if known.effects.is_empty() {
+                return vec![Deed::default(); stretch.cells.len()];
+            }
+            let all = deeds(stretch.run, &known.effects, &known.coefficients, layout.max_gap_us);
+            let all = all.unwrap_or_else(|| vec![Deed::default(); stretch.run.rows.len()]);
+            stretch.cells.iter().map(|cell| mean_deed(&all[cell.rows.clone()])).collect()
+        };
+        layout.stretches.iter().map(of).collect()
+    }
+
+    /// Reading minus reference in each cell, µg, under the sum of these deeds.
+    pub fn residual_ug(&self, layout: &Layout, deeds: &[&Deeds]) -> Columns {
+        let of = |(index, stretch): (usize, &super::layout::Stretch)| {
+            let values = stretch.cells.iter().enumerate().map(|(cell, place)| {
+                let sum = deeds.iter().fold(Deed::default(), |sum, deeds| sum.plus(&deeds[index][cell]));
+                self.cell_residual_ug(layout, place, &sum)
+            });
+            DMatrix::from_iterator(stretch.cells.len(), 1, values)
+        };
+        layout.stretches.iter().enumerate().map(of).collect()
+    }
+
+    fn cell_residual_ug(&self, layout: &Layout, cell: &Cell, deed: &Deed) -> f64 {
+        let x = cell.x - deed.delta_f_hz / layout.scale.delta_f_half_span_hz;
+        let t = cell.t + deed.temperature_c / layout.scale.temperature_half_span_c;
+        let reading_g = self.scale.reading_g(x, t, self.network.evaluate(x, t)) - deed.bias_g;
+        (reading_g - cell.level_g) * UG
+    }
+
+    /// How the reading can change by retraining, µg per expected change: polynomials and the network's tangents.
+    pub fn freedom(&self, layout: &Layout) -> Columns {
+        let departure_ug = f64::from(self.model.scaling.output_g).abs() * UG;
+        let column = |cell: &Cell| {
+            let mut values = polynomials(cell.x, cell.t);
+            values.iter_mut().for_each(|value| *value *= departure_ug);
+            values.extend(self.tangents(cell).map(|value| value * departure_ug * FREEDOM));
+            values
+        };
+        let of = |stretch: &super::layout::Stretch| {
+            let values: Vec<Vec<f64>> = stretch.cells.iter().map(column).collect();
+            let width = values.first().map_or(0, Vec::len);
+            DMatrix::from_row_iterator(values.len(), width, values.into_iter().flatten())
+        };
+        layout.stretches.par_iter().map(of).collect()
+    }
+
+    /// Scatter of the static reading from sample to sample, µg.
+    pub fn sample_ug(&self, layout: &Layout) -> Option<f64> {
+        let residuals = |stretch: &super::layout::Stretch| -> Vec<f64> {
+            let of = |row: &crate::campaign::Row| {
+                let [x, t] = layout.scale.inputs(&row.sample);
+                (self.scale.reading_g(x, t, self.network.evaluate(x, t)) - row.reference_g) * UG
+            };
+            stretch.run.rows.iter().map(of).collect()
+        };
+        let all: Vec<Vec<f64>> = layout.stretches.iter().map(residuals).collect();
+        sample_sigma_g(layout.stretches.iter().map(|stretch| stretch.run).zip(&all)).map(|sigma| sigma.max(LEAST_UG))
+    }
+
+    /// RMS slope over temperature at a given frequency difference, µg/°C.
+    pub fn ug_per_c(&self, layout: &Layout) -> f64 {
+        let reading = |x: f64, t: f64| self.scale.reading_g(x, t, self.network.evaluate(x, t)) * UG;
+        let slope = |cell: &Cell| (reading(cell.x, cell.t + 0.01) - reading(cell.x, cell.t - 0.01)) / 0.02;
+        let slopes: Vec<f64> = layout.cells().map(slope).collect();
+        rms(&slopes) / layout.scale.temperature_half_span_c
+    }
+
+    /// At the middle of the domain, Hz/g.
+    pub fn scale_factor_hz_per_g(&self, layout: &Layout) -> f64 {
+        let at = |x: f64| self.scale.reading_g(x, 0.0, self.network.evaluate(x, 0.0));
+        layout.scale.delta_f_half_span_hz * 2.0 / (at(1.0) - at(-1.0))
+    }
+
+    fn tangents(&self, cell: &Cell) -> impl Iterator<Item = f64> {
+        let weights = self.model.weights();
+        let (x, t) = (cell.x, cell.t);
+        (0..HIDDEN).flat_map(move |unit| {
+            let [wx, wt] = weights.input[unit].map(f64::from);
+            let u = f64::from(weights.bias[unit]) + wx * x + wt * t;
+            let rise = slope(u) * f64::from(weights.output[unit]) * HIDDEN_SIZE;
+            [sigmoid(u) * OUTPUT_SIZE, rise * x, rise * t, rise]
+        })
+    }
+}
+
+/// Chebyshev polynomials of both inputs.
+pub(super) fn polynomials(x: f64, t: f64) -> Vec<f64> {
+    let (most_x, most_t, most) = POWERS;
+    let (in_x, in_t) = (chebyshev(most_x, x), chebyshev(most_t, t));
+    let pairs = (0..=most_x).flat_map(|i| (0..=most_t.min(most - i)).map(move |j| (i, j)));
+    pairs.map(|(i, j)| in_x[i] * in_t[j]).collect()
+}
+
+fn chebyshev(most: usize, x: f64) -> Vec<f64> {
+    let mut values = vec![1.0, x];
+    for n in 2..=most {
+        values.push(2.0 * x * values[n - 1] - values[n - 2]);
+    }
+    values
+}

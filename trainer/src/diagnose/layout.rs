@@ -1,0 +1,178 @@
+//! The campaign as a diagnosis sees it: cells of neighbouring samples, run by run, with what noise may depend on.
+
+use crate::campaign::{Campaign, Run};
+use super::instrument::Known;
+use crate::fit::dataset::{InputScale, cells, mean};
+use firmware_core::{Memory, effect};
+use protocol::limits::MAX_PARAMETERS;
+use std::ops::Range;
+
+/// One cell: the mean of neighbouring samples at one position.
+#[derive(Clone, Debug)]
+pub(super) struct Cell {
+    /// Its rows within the run.
+    pub rows: Range<usize>,
+    /// Samples.
+    pub samples: f64,
+    /// Mean time from the run's first row, s.
+    pub time_s: f64,
+    /// Scaled frequency difference.
+    pub x: f64,
+    /// Scaled temperature.
+    pub t: f64,
+    /// Applied acceleration, g.
+    pub level_g: f64,
+    /// Acceleration across the input axis, g: the channel's, or else what is left of 1 g.
+    pub cross_g: f64,
+    /// How far the temperature may have gone astray unseen: coarse sampling of a bent course, or a beginning under way, °C.
+    pub unseen_c: f64,
+    /// Share of what effects with a memory brought along that is still there.
+    pub beginning: f64,
+    /// Whether the chamber was sent elsewhere, or arrived there, since the cell before.
+    pub new_node: bool,
+    /// Whether the sensor was moved since the cell before.
+    pub new_position: bool,
+}
+
+/// One run in cells.
+#[derive(Clone, Debug)]
+pub(super) struct Stretch<'a> {
+    /// The run.
+    pub run: &'a Run,
+    /// Its cells in order.
+    pub cells: Vec<Cell>,
+}
+
+/// All runs in cells.
+#[derive(Clone, Debug)]
+pub(super) struct Layout<'a> {
+    /// Run by run.
+    pub stretches: Vec<Stretch<'a>>,
+    /// From integers to x and t.
+    pub scale: InputScale,
+    /// Longest gap across which a memory is carried, µs.
+    pub max_gap_us: u32,
+}
+
+/// References closer than this are the same position, g.
+const SAME_POSITION_G: f64 = 1e-3;
+/// The channel that says how much acceleration lies across the input axis.
+const CROSS_CHANNEL: &str = "cross_g";
+
+impl<'a> Layout<'a> {
+    /// The cells of every run of the campaign.
+    pub fn new(campaign: &'a Campaign, scale: InputScale, max_gap_us: u32) -> Self {
+        let cross = campaign.channels.iter().position(|channel| channel == CROSS_CHANNEL);
+        let stretch = |run: &'a Run| Stretch { run, cells: cells_of(run, &scale, cross) };
+        Self { stretches: campaign.runs.iter().map(stretch).collect(), scale, max_gap_us }
+    }
+
+    /// Marks how much of what the effects' memories brought along from before each run is still there.
+    pub fn remember(&mut self, known: &Known) {
+        for stretch in &mut self.stretches {
+            stretch.cells.iter_mut().for_each(|cell| cell.beginning = 0.0);
+            for (effect, values) in known.effects.iter().zip(&known.coefficients.values) {
+                let mut coefficients = [0.0; MAX_PARAMETERS];
+                coefficients.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value);
+                let memory = effect::find::<f64>(effect.about.id).map(|effect| effect.memory(&coefficients));
+                brought_along(stretch, memory.unwrap_or(Memory::None));
+            }
+        }
+    }
+
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        self.stretches.iter().map(|stretch| stretch.cells.len()).sum()
+    }
+
+    /// All cells in order.
+    pub fn cells(&self) -> impl Iterator<Item = &Cell> {
+        self.stretches.iter().flat_map(|stretch| &stretch.cells)
+    }
+}
+
+fn brought_along(stretch: &mut Stretch, memory: Memory<f64>) {
+    let temperature_c = |cell: &Cell| f64::from(stretch.run.rows[cell.rows.start].sample.temperature_uc) * 1e-6;
+    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for cell in &mut stretch.cells {
+        let still = match memory {
+            Memory::None => 0.0,
+            Memory::Lag { tau_s } => (-cell.time_s / tau_s).exp(),
+            Memory::Play { radius } => {
+                let temperature_c = temperature_c(cell);
+                (lowest, highest) = (lowest.min(temperature_c), highest.max(temperature_c));
+                (1.0 - (highest - lowest) / (2.0 * radius)).max(0.0)
+            }
+        };
+        cell.beginning = cell.beginning.max(still);
+    }
+}
+
+fn cells_of(run: &Run, scale: &InputScale, cross: Option<usize>) -> Vec<Cell> {
+    let start_us = run.rows.first().map_or(0, |row| row.sample.time_us);
+    let mut found: Vec<Cell> = Vec::new();
+    let mut last_cross_uc = 0;
+    for rows in cells(run, scale) {
+        let datum = mean(&run.rows[rows.clone()], 0, scale);
+        let times = run.rows[rows.clone()].iter().map(|row| (row.sample.time_us - start_us) as f64 * 1e-6);
+        let cross_ug = cross.map(|channel| run.rows[rows.start].sample.channels[channel]);
+        let level_g = datum.reference_g;
+        let moved = |last: &Cell| (last.level_g - level_g).abs() > SAME_POSITION_G;
+        let turned = cross_ug.is_some_and(|cross_ug| (cross_ug - last_cross_uc).unsigned_abs() > 1000);
+        found.push(Cell {
+            samples: datum.weight,
+            time_s: times.sum::<f64>() / datum.weight,
+            x: datum.x,
+            t: datum.t,
+            level_g,
+            cross_g: cross_ug.map_or_else(|| (1.0 - level_g * level_g).max(0.0).sqrt(), |ug| ug as f64 * 1e-6),
+            unseen_c: (rows.clone().map(|row| unseen_c(run, row).powi(2)).sum::<f64>() / datum.weight).sqrt(),
+            beginning: 0.0,
+            new_node: false,
+            new_position: found.last().is_none_or(moved) || turned,
+            rows,
+        });
+        last_cross_uc = cross_ug.unwrap_or_default();
+    }
+    mark_nodes(run, &mut found);
+    found
+}
+
+/// Slower changes of temperature count as rest, °C/s.
+const REST_C_PER_S: f64 = 0.1 / 60.0;
+/// A change that nobody saw is a new node beyond this, °C.
+const NODE_STEP_C: f64 = 3.0;
+
+/// Where rest becomes motion, motion rest, or the temperature leaps.
+fn mark_nodes(run: &Run, cells: &mut [Cell]) {
+    let temperature_c = |row: usize| f64::from(run.rows[row].sample.temperature_uc) * 1e-6;
+    let time_s = |row: usize| run.rows[row].sample.time_us as f64 * 1e-6;
+    let mut last: Option<(usize, i32)> = None;
+    for cell in cells {
+        let (first, end) = (cell.rows.start, cell.rows.end.min(run.rows.len() - 1));
+        let seconds = time_s(end) - time_s(first);
+        let rate = if seconds > 0.0 { (temperature_c(end) - temperature_c(first)) / seconds } else { 0.0 };
+        let motion = if rate.abs() < REST_C_PER_S { 0 } else { rate.signum() as i32 };
+        cell.new_node = last.is_some_and(|(row, before)| {
+            motion != before || (motion == 0 && (temperature_c(first) - temperature_c(row)).abs() > NODE_STEP_C)
+        });
+        last = Some((cell.rows.end - 1, motion));
+    }
+}
+
+/// By how much a straight line between samples may miss the temperature around this row, °C; at the beginning, what one
+/// more interval at the same rate would have been.
+fn unseen_c(run: &Run, row: usize) -> f64 {
+    let interval = |from: usize| {
+        let (a, b) = (run.rows.get(from)?.sample, run.rows.get(from + 1)?.sample);
+        let seconds = b.time_us.saturating_sub(a.time_us) as f64 * 1e-6;
+        Some((f64::from(b.temperature_uc - a.temperature_uc) * 1e-6, seconds.max(f64::MIN_POSITIVE)))
+    };
+    match (row.checked_sub(1).and_then(interval), interval(row)) {
+        (Some((before_c, before_s)), Some((after_c, after_s))) => {
+            (after_c / after_s - before_c / before_s).abs() * before_s.min(after_s) / 8.0
+        }
+        (None, Some((after_c, _))) => after_c.abs(),
+        _ => 0.0,
+    }
+}

@@ -1,0 +1,196 @@
+//! Which effects are missing: forward selection, each step judged with everything else free to adapt.
+
+use super::candidate::Candidate;
+use super::case::{Benches, Case, Freedom, Held, Left, Noises};
+use super::evidence::{Score, joined, width};
+use super::instrument::Known;
+use super::sum_channel::{Response, response};
+use super::whitening::Columns;
+use crate::fit::effects::Chosen;
+use firmware_core::effect::Role;
+use rayon::prelude::*;
+
+/// How well one effect does.
+#[derive(Clone, Debug)]
+pub(super) struct Contender {
+    /// The effect.
+    pub effect: Chosen,
+    /// Its fitted coefficients.
+    pub values: Vec<f64>,
+    /// Twice the gain in log likelihood, less what its parameters are worth.
+    pub evidence: f64,
+    /// The noise that it leaves, once it is estimated.
+    pub noises: Option<Noises>,
+}
+
+impl Contender {
+    fn is_same_effect(&self, other: &Self) -> bool {
+        self.effect.about.id == other.effect.about.id
+    }
+
+    /// The effect by itself.
+    pub fn alone(&self) -> Known {
+        Known::NONE.with(&self.effect, &self.values)
+    }
+}
+
+/// One effect that was found.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    /// The winner.
+    pub winner: Contender,
+    /// The others in order.
+    pub rivals: Vec<Contender>,
+}
+
+/// So many effects go from the screening into the final, as judged by the noise as estimated and by a small one.
+const FINALISTS: [usize; 2] = [5, 4];
+/// How often a finalist's parameters and noise are fitted in turn.
+const TURNS: usize = 2;
+/// Steps of each fit of the parameters.
+const REFINEMENTS: usize = 4;
+
+/// Everything that stays the same while contenders are compared.
+struct Scene {
+    held: Held,
+    left: Left,
+    freedom: Freedom,
+    noises: Noises,
+    deviance: f64,
+}
+
+/// Parameters that a fit chooses.
+pub(super) fn freedom_of(effect: &Chosen) -> usize {
+    effect.about.parameters.iter().filter(|about| about.role != Role::Origin).count()
+}
+
+impl Case<'_> {
+    /// What each parameter costs: the logarithm of the number of cells, as of Schwarz 1978.
+    pub fn price(&self) -> f64 {
+        (self.layout.len() as f64).ln()
+    }
+
+    /// The effect that `known` misses most, if the candidates can say.
+    pub fn missing(&self, known: &Known, candidates: &[Candidate], noises: &Noises) -> Option<Found> {
+        let scene = self.scene(known, noises)?;
+        let mut order: Vec<Contender> = self
+            .finalists(&scene, known, candidates)?
+            .into_par_iter()
+            .filter_map(|contender| self.contend(&scene, contender))
+            .collect();
+        order.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let winner = (!order.is_empty()).then(|| order.remove(0))?;
+        Some(Found { winner, rivals: order })
+    }
+
+    fn scene(&self, known: &Known, noises: &Noises) -> Option<Scene> {
+        let (left, freedom, held) = (self.left(known), self.adapting(known), self.held(known));
+        let noises = self.noises(&left, &freedom, Some(noises));
+        let deviance = self.benches(&left, &freedom, &noises)?.deviance();
+        Some(Scene { held, left, freedom, noises, deviance })
+    }
+
+    fn finalists(&self, scene: &Scene, known: &Known, candidates: &[Candidate]) -> Option<Vec<Contender>> {
+        let mut chosen: Vec<Contender> = Vec::new();
+        for (noises, most) in [scene.noises, scene.noises.small()].iter().zip(FINALISTS) {
+            let benches = self.benches(&scene.left, &scene.freedom, noises)?;
+            let mut screened = self.screen(&benches, known, candidates);
+            screened.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+            let is_new = |contender: &Contender| chosen.iter().all(|other| !other.is_same_effect(contender));
+            let next: Vec<Contender> = screened.into_iter().take(most).filter(is_new).collect();
+            chosen.extend(next);
+        }
+        Some(chosen)
+    }
+
+    /// Fits an effect's parameters and the noise in turn, and says how likely that makes what was measured.
+    fn contend(&self, scene: &Scene, contender: Contender) -> Option<Contender> {
+        let (mut own, mut noises) = (contender.alone(), scene.noises);
+        for _ in 0..TURNS {
+            let benches = self.benches(&scene.left, &scene.freedom, &noises)?;
+            own = self.refit(Some(&scene.held), &own, &benches, REFINEMENTS);
+            let freedom = self.widened(&scene.freedom, &scene.held, &own);
+            noises = self.noises(&self.left_beside(Some(&scene.held), &own), &freedom, Some(&noises));
+        }
+        let left = self.left_beside(Some(&scene.held), &own);
+        let mut deviance = self.benches(&left, &scene.freedom, &noises)?.deviance();
+        if let Some((freed, with)) = self.freed(scene, &left, &own, &noises) {
+            let value = self.benches(&freed, &scene.freedom, &with)?.deviance() + self.price();
+            if value < deviance {
+                (deviance, noises) = (value, with);
+            }
+        }
+        let values = own.coefficients.values.concat();
+        // Neither side may profit from a noise that was searched for longer.
+        let without = self.benches(&scene.left, &scene.freedom, &noises)?.deviance().min(scene.deviance);
+        let evidence = without - deviance - self.price() * freedom_of(&contender.effect) as f64;
+        Some(Contender { values, evidence, noises: Some(noises), ..contender })
+    }
+
+    /// What is left of the sum when an effect's share there is free within bounds, and the noise of that.
+    fn freed(&self, scene: &Scene, left: &Left, own: &Known, noises: &Noises) -> Option<(Left, Noises)> {
+        let Response::Free(most) = response(own.effects.first()?.about) else { return None };
+        let sum = left.sum.as_ref()?;
+        let before = self.left_beside(Some(&scene.held), &Known::NONE).delta;
+        let bias = difference(&left.delta, &before);
+        let bound = most * self.mhz_per_ug();
+        let (mut noises, mut freed) = (*noises, left.clone());
+        for _ in 0..TURNS {
+            let bench = self.benches(left, &scene.freedom, &noises)?.sum?;
+            let score = bench.score(&bias);
+            let share = (-score.right[0] / score.normal[(0, 0)]).clamp(-bound, bound);
+            freed.sum = Some(sum.iter().zip(&bias).map(|(sum, bias)| sum + bias * share).collect());
+            noises = self.noises(&freed, &scene.freedom, Some(&noises));
+        }
+        Some((freed, noises))
+    }
+
+    /// The best shape of every effect on the grid.
+    fn screen(&self, benches: &Benches, known: &Known, candidates: &[Candidate]) -> Vec<Contender> {
+        let scores = |columns: Vec<&Columns>, bench: &super::evidence::Bench| {
+            let widths: Vec<usize> = columns.iter().map(|columns| width(columns)).collect();
+            bench.scores(&joined(&columns), &widths)
+        };
+        let delta = scores(candidates.iter().map(|candidate| &candidate.columns).collect(), &benches.delta);
+        let sum = benches.sum.as_ref().map(|bench| {
+            scores(candidates.iter().filter_map(|candidate| candidate.sum.as_ref()).collect(), bench)
+        });
+        let mut best: Vec<Contender> = Vec::new();
+        for (index, candidate) in candidates.iter().enumerate() {
+            if known.effects.iter().any(|effect| effect.about.id == candidate.effect.about.id) {
+                continue;
+            }
+            let score = benches.tied(&delta[index], sum.as_ref().map(|sum| &sum[index]));
+            let contender = self.judged(candidate, &score);
+            match best.iter_mut().find(|other| other.effect.about.id == candidate.effect.about.id) {
+                Some(other) if other.evidence >= contender.evidence => {}
+                Some(other) => *other = contender,
+                None => best.push(contender),
+            }
+        }
+        best
+    }
+
+    fn judged(&self, candidate: &Candidate, score: &Score) -> Contender {
+        let mut values = candidate.values.clone();
+        let gain = if candidate.amplitudes.is_empty() {
+            score.gain_as_is()
+        } else {
+            for (&index, amplitude) in candidate.amplitudes.iter().zip(score.amplitudes().iter().flatten()) {
+                values[index] *= amplitude;
+            }
+            score.gain()
+        };
+        let evidence = gain - self.price() * freedom_of(&candidate.effect) as f64;
+        Contender { effect: candidate.effect.clone(), values, evidence, noises: None }
+    }
+
+    /// The scale factor, mHz per µg.
+    fn mhz_per_ug(&self) -> f64 {
+        self.instrument.scale_factor_hz_per_g(&self.layout) * 1e3 * 1e-6
+    }
+}
+
+fn difference(a: &Columns, b: &Columns) -> Columns {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
