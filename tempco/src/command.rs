@@ -4,6 +4,7 @@ mod add;
 mod change;
 mod compare;
 mod demo;
+mod diagnose;
 mod effects;
 mod export;
 mod inspect;
@@ -25,6 +26,7 @@ pub enum Command {
     Reveal(reveal::Reveal),
     Train(train::Train),
     Compare(compare::Compare),
+    Diagnose(diagnose::Diagnose),
     Effects(effects::Effects),
     Add(add::Add),
     Remove(remove::Remove),
@@ -42,6 +44,7 @@ impl Command {
             Self::Reveal(command) => command.run(),
             Self::Train(command) => command.run(),
             Self::Compare(command) => command.run(),
+            Self::Diagnose(command) => command.run(),
             Self::Effects(command) => command.run(),
             Self::Add(command) => command.run(),
             Self::Remove(command) => command.run(),

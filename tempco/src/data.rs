@@ -56,6 +56,12 @@ impl Data {
     pub fn read(&self) -> Result<Campaign, Failure> {
         self.reading.read(&self.files)
     }
+
+    /// The same on a command line, to be typed again.
+    pub fn command_line(&self) -> String {
+        let files = self.files.iter().map(|file| quoted(&file.display().to_string()));
+        files.chain(self.reading.words()).collect::<Vec<_>>().join(" ")
+    }
 }
 
 impl Reading {
@@ -77,6 +83,28 @@ impl Reading {
         }
         Ok(Campaign::read(files, &options)?)
     }
+
+    /// The options that were given, as they are typed.
+    fn words(&self) -> impl Iterator<Item = String> {
+        let list = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
+        let one = [
+            ("--signal", self.signal.clone()),
+            ("--signal-unit", self.signal_unit.clone()),
+            ("--reference", self.reference.clone()),
+            ("--reference-unit", self.reference_unit.clone()),
+            ("--constant-reference", self.constant_reference.map(|g| g.to_string())),
+            ("--channels", self.channels.as_deref().and_then(list)),
+            ("--ignore", list(&self.ignore)),
+        ];
+        let maps = self.map.iter().map(|pair| ("--map", Some(pair.clone())));
+        maps.chain(one).filter_map(|(name, value)| Some(format!("{name} {}", quoted(&value?))))
+    }
+}
+
+/// As a shell takes it for one word.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=,+:".contains(c);
+    if word.chars().all(plain) { word.to_owned() } else { format!("'{word}'") }
 }
 
 fn measured(column: Option<&String>, unit: Option<&String>) -> Option<Measured> {

@@ -72,6 +72,7 @@ macro_rules! plain {
 
 plain!(
     trainer::cross_validation::CrossValidationError,
+    trainer::diagnose::DiagnoseError,
     trainer::model::ModelError,
     trainer::model::DeviceLimit,
     trainer::residuals::ResidualError,

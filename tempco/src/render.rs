@@ -1,5 +1,7 @@
 //! Results as text for people.
 
+pub mod diagnosis;
+
 use crate::table::Table;
 use std::fmt::Write;
 use trainer::compare::{Comparison, Figures, RunFigures};

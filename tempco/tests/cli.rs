@@ -124,6 +124,32 @@ fn other_programs_read_json() {
 }
 
 #[test]
+fn a_diagnosis_answers_people_in_a_sentence_and_programs_in_json() {
+    let folder = trained();
+    let diagnose = |options: &[&str]| {
+        let mut command = tempco(folder.path());
+        command.args(["diagnose", "model.toml", SMALL]).args(options);
+        command
+    };
+    let text = stdout(&mut diagnose(&[]));
+    assert!(text.contains("Noise used:") && text.contains("\nNext:  tempco "), "{text}");
+    assert!(text.contains("What this campaign can't show:") && text.contains("supply-voltage"), "{text}");
+
+    let value: serde_json::Value = serde_json::from_str(&stdout(&mut diagnose(&["--json"]))).expect("JSON");
+    for key in ["residual_ug", "noise_floor_ug", "explainable"] {
+        assert!(value[key].is_number(), "{key}: {value}");
+    }
+    assert!(value["findings"].is_array() && value["unobservable"].is_array(), "{value}");
+    assert!(value.as_object().is_some_and(|object| object.contains_key("unexplained")), "{value}");
+    let verdict = value["verdict"].as_str().expect("a verdict");
+    assert!(["missing", "ambiguous", "nothing-missing", "unexplained"].contains(&verdict), "{verdict}");
+
+    // The answer is the answer; only whoever asks for it makes it an exit code.
+    let code = i32::from(verdict != "nothing-missing");
+    diagnose(&["--fail-if-missing"]).assert().code(code);
+}
+
+#[test]
 fn an_exceeded_limit_is_a_no_and_not_an_error() {
     let folder = trained();
     tempco(folder.path()).args(["compare", "model.toml", SMALL, "--fail-above", "0.5"]).assert().code(1);
@@ -166,7 +192,9 @@ fn every_failure_names_its_place_and_a_way_out() {
 #[test]
 fn help_of_every_verb_has_an_example() {
     let folder = TempDir::new().expect("a folder");
-    for verb in ["demo", "simulate", "train", "compare", "effects", "add", "remove", "export", "inspect", "verify"] {
+    let verbs =
+        ["demo", "simulate", "train", "compare", "diagnose", "effects", "add", "remove", "export", "inspect", "verify"];
+    for verb in verbs {
         let text = stdout(tempco(folder.path()).args([verb, "--help"]));
         assert!(text.contains(&format!("Example:  tempco {verb}")), "{verb}: {text}");
     }

@@ -63,7 +63,8 @@ pub fn ladder(change: &Change, effects: &[EffectChoice], output: &Path, json: bo
         value["effects"] = serde_json::json!(trained.model.effects);
         anstream::println!("{value:#}");
     } else {
-        anstream::println!("{}", rungs_table(&rungs, comparison.noise_floor_ug));
+        let noise = comparison.noise_floor_ug.map(|noise_ug| ("noise from sample to sample", noise_ug));
+        anstream::println!("{}", rungs_table(&rungs, noise));
         for effect in &trained.model.effects {
             let values: Vec<String> =
                 effect.parameters.iter().map(|(name, value)| format!("{name} = {value:.4e}")).collect();
@@ -75,7 +76,7 @@ pub fn ladder(change: &Change, effects: &[EffectChoice], output: &Path, json: bo
 }
 
 /// The residual on held-out runs, effect by effect, as figures and as bars.
-fn rungs_table(rungs: &[(String, f64)], noise_ug: Option<f64>) -> Table {
+pub fn rungs_table(rungs: &[(String, f64)], noise: Option<(&str, f64)>) -> Table {
     let highest = rungs.iter().map(|(_, residual_ug)| *residual_ug).fold(0.0, f64::max);
     let mut table = Table::new(["model", "held-out residual µg", ""]);
     let mut row = |name: &str, residual_ug: f64| {
@@ -85,8 +86,8 @@ fn rungs_table(rungs: &[(String, f64)], noise_ug: Option<f64>) -> Table {
     for (index, (name, residual_ug)) in rungs.iter().enumerate() {
         row(&if index == 0 { name.clone() } else { format!("+ {name}") }, *residual_ug);
     }
-    if let Some(noise_ug) = noise_ug {
-        row("noise from sample to sample", noise_ug);
+    if let Some((name, noise_ug)) = noise {
+        row(name, noise_ug);
     }
     table
 }

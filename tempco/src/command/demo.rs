@@ -1,115 +1,164 @@
-//! `tempco demo`: the whole path on a simulated campaign.
+//! `tempco demo`: the whole path on a blind campaign, the truth revealed at the end.
 
+use super::change::rungs_table;
+use super::diagnose::diagnosed;
+use super::simulate::{self, blind::Blind};
 use super::train::train_with_bar;
-use super::{export, simulate, verify};
+use super::{export, reveal, verify};
 use crate::failure::{Answer, Failure};
+use crate::render::diagnosis;
 use crate::table::Table;
 use clap::Args;
 use firmware_sim::scenario::Scenario;
+use firmware_sim::seal::SealedTruth;
+use firmware_sim::twin::NoiseFloor;
 use std::path::{Path, PathBuf};
-use trainer::campaign::{Campaign, HoldOut, ReadOptions, Split};
+use trainer::campaign::{Campaign, HoldOut, ReadOptions, Run, Split};
 use trainer::compare::compare;
+use trainer::diagnose::Diagnosis;
+use trainer::model::Model;
 use trainer::noise::rms;
-use trainer::train::{Backprop, Method, TrainSettings, Trained};
+use trainer::residuals::arranged;
+use trainer::train::{EffectChoice, TrainSettings, Trained};
 
-/// Shows the whole path: measurements, training, comparison, export, verification.
+/// Shows the whole path: measurements that hide an effect, training, diagnosis, cure, export, verification, the truth.
 #[derive(Args)]
-#[command(after_help = "Example:  tempco demo --output my-demo")]
+#[command(after_help = "Example:  tempco demo --output my-demo --seed 21")]
 pub struct Demo {
     /// Folder for the files
     #[arg(short, long, value_name = "FOLDER", default_value = "tempco-demo")]
     output: PathBuf,
 
-    /// Seed of every random number
+    /// Seed of every random number, and of what is hidden
     #[arg(long, default_value_t = 1)]
     seed: u64,
+}
+
+/// The scenario that excites every effect.
+const SCENARIO: &str = "rich";
+
+/// What was measured, and what is known of it.
+struct Measured {
+    data: PathBuf,
+    envelope: PathBuf,
+    campaign: Campaign,
+    split: Split,
+    /// What noise alone would leave on the held-out runs, as the simulation states it, µg.
+    noise_ug: f64,
 }
 
 impl Demo {
     pub fn run(&self) -> Result<Answer, Failure> {
         std::fs::create_dir_all(&self.output).map_err(|error| Failure::io(&self.output, &error))?;
+        let measured = self.measure()?;
+        let trained = self.train(&measured)?;
+        let diagnosis = diagnosed(&trained.model, &measured.campaign)?;
+        anstream::println!("3. Diagnosis\n{}", diagnosis::short(&diagnosis));
+        let model = self.add(&measured, &trained, &diagnosis)?;
+        let answer = self.deliver(&measured, &model)?;
+        let truth = reveal::opened(&measured.envelope, &measured.data)?;
+        anstream::println!("7. The truth\n{}\n{}\n", reveal::words(&truth, &measured.data), judged(&truth, &diagnosis));
+        self.further(&measured.data);
+        Ok(answer)
+    }
+
+    fn measure(&self) -> Result<Measured, Failure> {
+        let scenario =
+            Scenario::preset(SCENARIO).ok_or_else(|| Failure::new(format_args!("no scenario named {SCENARIO}")))?;
         let data = self.output.join("campaign.csv");
-        let floor_ug = self.measure(&data)?;
+        let sealed = Blind::ONE.measure(&scenario, self.seed, &data)?;
         let campaign = Campaign::read(std::slice::from_ref(&data), &ReadOptions::default())?;
         let split = campaign.split(&HoldOut::LastOfEachKind)?;
         let names: Vec<&str> = split.held_out.iter().map(|&index| campaign.runs[index].name.as_str()).collect();
-        anstream::println!("   held out, never seen by any training: {}\n", names.join(", "));
-        let trained = self.train(&campaign, &split, floor_ug)?;
-        self.deliver(&trained, &campaign, &data)
+        let noise_ug = noise_ug(&scenario, self.seed, &names)?;
+        anstream::println!("1. Measurements: {} rows in {} runs. They hide an effect;", sealed.rows, sealed.runs);
+        anstream::println!("   what it is, is sealed in {} until the end.", sealed.envelope.display());
+        anstream::println!("   held out, never seen by any training: {}", names.join(", "));
+        anstream::println!("   noise alone would leave {noise_ug:.2} µg there, says the simulation\n");
+        Ok(Measured { data, envelope: sealed.envelope, campaign, split, noise_ug })
     }
 
-    fn measure(&self, data: &Path) -> Result<f64, Failure> {
-        let scenario = Scenario::preset("clean").ok_or_else(|| Failure::new("no scenario named clean"))?;
-        let recording = simulate::simulate(&scenario, self.seed)?;
-        simulate::write(&recording, data)?;
-        anstream::println!(
-            "1. Measurements: {} rows in {} runs, {}",
-            recording.rows(),
-            recording.runs.len(),
-            scenario.description
-        );
-        anstream::println!("   noise floor stated by the simulation: {:.2} µg", recording.noise_floor_ug());
-        Ok(recording.noise_floor_ug())
+    fn settings(&self, effects: Vec<EffectChoice>) -> TrainSettings {
+        TrainSettings { effects, ..TrainSettings::new(self.seed) }
     }
 
-    /// Trains with every method and prints what each leaves on the held-out runs.
-    fn train(&self, campaign: &Campaign, split: &Split, floor_ug: f64) -> Result<Trained, Failure> {
-        let methods = [
-            ("FA-BP (paper's comparison)", Method::Backprop(Backprop::standard())),
-            ("IFA-BP (paper's method)", Method::Backprop(Backprop::improved())),
-            ("second order (default)", Method::SecondOrder),
-        ];
-        let mut table = Table::new(["model", "held-out residual µg", "times the noise floor", "worst slope error ppm"]);
-        let mut row = |name: &str, residual_ug: f64, slope: Option<f64>| {
-            table.row([
-                name.to_owned(),
-                format!("{residual_ug:.2}"),
-                format!("{:.2}", residual_ug / floor_ug),
-                slope.map_or_else(|| "–".to_owned(), |worst| format!("{worst:.0}")),
-            ]);
-        };
-        let mut last = None;
-        for (name, method) in methods {
-            let settings = TrainSettings { method, ..TrainSettings::new(self.seed) };
-            let trained = train_with_bar(campaign, split, &settings, name)?;
-            let comparison = compare(&trained.model, campaign)?;
-            if last.is_none() {
-                row(
-                    "none: a line through the raw frequency",
-                    held_out_ug(campaign, split, |run| trained.raw_g(run)),
-                    None,
-                );
-                let polynomial = held_out_ug(campaign, split, |run| trained.baseline.residuals_g(run));
-                row("polynomial Δf²·T³", polynomial, None);
-            }
-            row(name, comparison.residual_ug, comparison.sensitivity_ppm.map(|sensitivity| sensitivity.worst));
-            last = Some(trained);
+    /// Trains the network alone and prints what it leaves on the held-out runs, beside simpler models.
+    fn train(&self, measured: &Measured) -> Result<Trained, Failure> {
+        let Measured { campaign, split, noise_ug, .. } = measured;
+        let trained = train_with_bar(campaign, split, &self.settings(Vec::new()), "training")?;
+        trained.model.write(&self.output.join("model.toml"))?;
+        let mut table = Table::new(["model", "held-out residual µg", "times the noise"]);
+        for (name, residual_ug) in [
+            ("a line through the raw frequency", held_out_ug(measured, |run| trained.raw_g(run))),
+            ("polynomial Δf²·T³", held_out_ug(measured, |run| trained.baseline.residuals_g(run))),
+            ("network", compare(&trained.model, campaign)?.residual_ug),
+        ] {
+            table.row([name.to_owned(), format!("{residual_ug:.2}"), format!("{:.2}", residual_ug / noise_ug)]);
         }
-        anstream::println!("2. Models, 30 restarts each:\n{table}");
-        last.ok_or_else(|| Failure::new("no method was trained"))
+        anstream::println!("2. Models without the effect\n{table}");
+        Ok(trained)
     }
 
-    fn deliver(&self, trained: &Trained, campaign: &Campaign, data: &Path) -> Result<Answer, Failure> {
-        let (model, bin, hex) =
-            (self.output.join("model.toml"), self.output.join("calibration.bin"), self.output.join("calibration.hex"));
-        trained.model.write(&model)?;
-        let bytes = trained.model.to_bytes()?;
-        export::write(&bin, &bytes)?;
-        let address = export::write(&hex, &bytes)?;
-        anstream::println!("3. Calibration exported: {} bytes{address}", bytes.len());
-        let parity = verify::verify(&trained.model.to_blob()?, campaign)?;
-        anstream::println!("4. Virtual instrument, over its own wire: {parity}\n");
-        anstream::println!(
-            "The files are in {}: model.toml, calibration.bin, calibration.hex, campaign.csv",
-            self.output.display()
-        );
-        anstream::println!("Look closer:  tempco compare {} {}", model.display(), data.display());
-        anstream::println!("Repeat:       {}", verify::command_line(&model, data));
+    /// Adds the first finding, if there is one that an instrument can take out.
+    fn add(&self, measured: &Measured, trained: &Trained, diagnosis: &Diagnosis) -> Result<Model, Failure> {
+        let Measured { campaign, split, noise_ug, .. } = measured;
+        let Some(effect) = diagnosis::first_to_add(diagnosis) else {
+            anstream::println!("4. Nothing to add: the model stays as it is\n");
+            return Ok(trained.model.clone());
+        };
+        let better = train_with_bar(campaign, split, &self.settings(vec![EffectChoice::named(effect)]), effect)?.model;
+        better.write(&self.output.join("better.toml"))?;
+        let rungs = [("network alone", &trained.model), (effect, &better)];
+        let rung = |(name, model): (&str, &Model)| Ok((name.to_owned(), compare(model, campaign)?.residual_ug));
+        let rungs = rungs.into_iter().map(rung).collect::<Result<Vec<_>, Failure>>()?;
+        let noise = ("noise alone, says the simulation", *noise_ug);
+        anstream::println!("4. The model with the effect\n{}", rungs_table(&rungs, Some(noise)));
+        Ok(better)
+    }
+
+    fn deliver(&self, measured: &Measured, model: &Model) -> Result<Answer, Failure> {
+        let bytes = model.to_bytes()?;
+        export::write(&self.output.join("calibration.bin"), &bytes)?;
+        let address = export::write(&self.output.join("calibration.hex"), &bytes)?;
+        anstream::println!("5. Calibration exported: {} bytes{address}", bytes.len());
+        let parity = verify::verify(&model.to_blob()?, &arranged(model, &measured.campaign)?)?;
+        anstream::println!("6. Virtual instrument, over its own wire: {parity}\n");
         Ok(if parity.identical == parity.samples { Answer::Yes } else { Answer::No })
+    }
+
+    fn further(&self, data: &Path) {
+        let model = self.output.join("model.toml");
+        anstream::println!("The files are in {}.", self.output.display());
+        anstream::println!("Look closer:   tempco diagnose {} {}", model.display(), data.display());
+        anstream::println!("Another seed:  tempco demo --seed {}", self.seed + 1);
     }
 }
 
-fn held_out_ug(campaign: &Campaign, split: &Split, residuals_g: impl Fn(&trainer::campaign::Run) -> Vec<f64>) -> f64 {
+/// The same campaign without what is hidden: its noise may be known.
+fn noise_ug(scenario: &Scenario, seed: u64, names: &[&str]) -> Result<f64, Failure> {
+    let recording = simulate::simulate(scenario, seed)?;
+    let held_out = recording.runs.iter().filter(|run| names.contains(&run.name.as_str()));
+    Ok(NoiseFloor::mean(held_out.flat_map(|run| &run.rows).map(|row| row.truth.floor)).noise_ug())
+}
+
+fn held_out_ug(measured: &Measured, residuals_g: impl Fn(&Run) -> Vec<f64>) -> f64 {
+    let Measured { campaign, split, .. } = measured;
     let residuals: Vec<f64> = split.held_out.iter().flat_map(|&index| residuals_g(&campaign.runs[index])).collect();
     rms(&residuals) * 1e6
+}
+
+/// Whether the diagnosis was right, in a sentence.
+fn judged(truth: &SealedTruth, diagnosis: &Diagnosis) -> String {
+    let Some(hidden) = truth.hidden.first().map(|hidden| &hidden.name) else {
+        return "There was nothing to find.".to_owned();
+    };
+    match diagnosis.findings.first() {
+        Some(first) if first.effect == *hidden => format!("The diagnosis was right: it named {hidden}."),
+        Some(first) if first.confounded_with.contains(hidden) => format!(
+            "The diagnosis was right to leave it open: it named {} and {hidden}, which this campaign can't tell apart.",
+            first.effect
+        ),
+        Some(first) => format!("The diagnosis was wrong: it named {}, and not {hidden}.", first.effect),
+        None => format!("The diagnosis did not name {hidden}."),
+    }
 }

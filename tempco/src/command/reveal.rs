@@ -24,14 +24,7 @@ pub struct Reveal {
 impl Reveal {
     pub fn run(&self) -> Result<Answer, Failure> {
         let campaign = self.campaign.clone().unwrap_or_else(|| self.sealed.with_extension("csv"));
-        let text = std::fs::read_to_string(&self.sealed).map_err(|error| Failure::io(&self.sealed, &error))?;
-        let digest = CampaignDigest::of([std::fs::read(&campaign).map_err(|error| {
-            Failure::io(&campaign, &error).help(format_args!(
-                "name the campaign that the truth belongs to:  tempco reveal {} CAMPAIGN",
-                self.sealed.display()
-            ))
-        })?]);
-        let truth = open(&text, &digest).map_err(|error| refused(&self.sealed, &campaign, &error))?;
+        let truth = opened(&self.sealed, &campaign)?;
         if self.json {
             anstream::println!("{:#}", json(&truth));
         } else {
@@ -39,6 +32,18 @@ impl Reveal {
         }
         Ok(Answer::Yes)
     }
+}
+
+/// Opens an envelope that belongs to this campaign.
+pub fn opened(sealed: &Path, campaign: &Path) -> Result<SealedTruth, Failure> {
+    let text = std::fs::read_to_string(sealed).map_err(|error| Failure::io(sealed, &error))?;
+    let digest = CampaignDigest::of([std::fs::read(campaign).map_err(|error| {
+        Failure::io(campaign, &error).help(format_args!(
+            "name the campaign that the truth belongs to:  tempco reveal {} CAMPAIGN",
+            sealed.display()
+        ))
+    })?]);
+    open(&text, &digest).map_err(|error| refused(sealed, campaign, &error))
 }
 
 fn refused(sealed: &Path, campaign: &Path, error: &SealError) -> Failure {
@@ -55,7 +60,8 @@ fn refused(sealed: &Path, campaign: &Path, error: &SealError) -> Failure {
     }
 }
 
-fn words(truth: &SealedTruth, campaign: &Path) -> String {
+/// What was hidden, in words.
+pub fn words(truth: &SealedTruth, campaign: &Path) -> String {
     let SealedTruth { blind_seed, noise_floor_ug, hidden, scenario } = truth;
     let name = scenario.name.trim_end_matches("-blind");
     let what = match hidden.len() {

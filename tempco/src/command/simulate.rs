@@ -1,6 +1,6 @@
 //! `tempco simulate SCENARIO -o campaign.csv`
 
-mod blind;
+pub mod blind;
 
 use crate::failure::{Answer, Failure};
 use crate::progress::bar;

@@ -6,7 +6,7 @@ use crate::progress::bar;
 use clap::Args;
 use firmware_sim::virtual_instrument::VirtualInstrument;
 use protocol::{Blob, Request};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use trainer::campaign::{Campaign, Run};
 use trainer::model::Model;
 use trainer::replay::replay;
@@ -88,9 +88,4 @@ fn verify_run(blob: &Blob, run: &Run, instrument: &mut VirtualInstrument, parity
         }
     }
     Ok(())
-}
-
-/// What a person types to repeat it.
-pub fn command_line(model: &Path, data: &Path) -> String {
-    format!("tempco verify {} {}", model.display(), data.display())
 }

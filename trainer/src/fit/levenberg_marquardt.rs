@@ -159,7 +159,8 @@ impl Search {
             return self.reject();
         };
         let promised = self.predicted_decrease(&direction);
-        if promised <= limits.decrease * self.quadratic.cost || promised <= 0.0 {
+        // A step that the damping holds short promises little however far the minimum is.
+        if promised * (1.0 + self.damping) <= limits.decrease * self.quadratic.cost || promised <= 0.0 {
             return Step::End(Termination::Converged);
         }
         if self.is_small(&direction, limits.step) {
@@ -275,6 +276,32 @@ mod tests {
         // Powers of two, so that the arithmetic is the same to the last bit.
         let units = [60, -60].map(|exponent| 2.0_f64.powi(exponent));
         assert!(units.iter().all(|unit| path(*unit) == path(1.0)));
+    }
+
+    /// A small bowl on a high floor: what can be gained is half a thousandth of the cost.
+    struct Bowl;
+
+    impl Problem for Bowl {
+        fn parameters(&self) -> usize {
+            1
+        }
+
+        fn cost(&mut self, p: &[f64]) -> f64 {
+            1000.0 + 0.5 * (p[0] - 1.0).powi(2)
+        }
+
+        fn linearise(&mut self, p: &[f64], quadratic: &mut Quadratic) {
+            quadratic.cost = self.cost(p);
+            quadratic.gradient[0] = p[0] - 1.0;
+            quadratic.hessian[(0, 0)] = 1.0;
+        }
+    }
+
+    #[test]
+    fn a_short_first_step_is_not_taken_for_the_end() {
+        let limits = Limits { decrease: 1e-5, ..LIMITS };
+        let minimum = minimise(&mut Bowl, &[0.0], &limits, |_, _| ControlFlow::Continue(()));
+        assert!((minimum.point[0] - 1.0).abs() < 0.2, "{minimum:?}");
     }
 
     #[test]

@@ -6,7 +6,8 @@ use crate::progress::spinner;
 use clap::Args;
 use firmware_sim::scenario::{BlindError, BlindOptions, Scenario};
 use firmware_sim::seal::{CampaignDigest, seal};
-use std::path::Path;
+use std::fmt;
+use std::path::{Path, PathBuf};
 
 /// What may be hidden.
 #[derive(Args)]
@@ -28,9 +29,34 @@ pub struct Blind {
     outside: bool,
 }
 
+/// Where a blind campaign and its truth are. Its `Display` says so, and not what is hidden.
+pub struct Sealed {
+    pub rows: usize,
+    pub runs: usize,
+    /// Of the scenario as it is known: that of the recording might tell.
+    pub noise_floor_ug: f64,
+    pub campaign: PathBuf,
+    pub envelope: PathBuf,
+}
+
+impl fmt::Display for Sealed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { rows, runs, noise_floor_ug, campaign, envelope } = self;
+        let (campaign, envelope) = (campaign.display(), envelope.display());
+        writeln!(f, "{rows} rows in {runs} runs written to {campaign}; noise floor {noise_floor_ug:.2} µg")?;
+        write!(
+            f,
+            "What they hide is sealed in {envelope}; open it when you have made up your mind:  tempco reveal {envelope}"
+        )
+    }
+}
+
 impl Blind {
-    /// Measures the blinded campaign, writes it and its envelope, and says where, but not what.
-    pub fn measure(&self, scenario: &Scenario, seed: u64, output: &Path) -> Result<String, Failure> {
+    /// Hides one effect of the catalogue.
+    pub const ONE: Self = Self { blind: true, effects_at_most: Some(1), nothing_possible: false, outside: false };
+
+    /// Measures the blinded campaign, and writes it and its envelope.
+    pub fn measure(&self, scenario: &Scenario, seed: u64, output: &Path) -> Result<Sealed, Failure> {
         let envelope = output.with_extension("sealed");
         if envelope == *output {
             return Err(Failure::new(format_args!("{}: the campaign would overwrite its own truth", output.display()))
@@ -46,17 +72,13 @@ impl Blind {
         let campaign = std::fs::read(output).map_err(|error| io(output, &error))?;
         let sealed = seal(&truth, &CampaignDigest::of([campaign]));
         std::fs::write(&envelope, sealed).map_err(|error| io(&envelope, &error))?;
-        Ok(format!(
-            "{} rows in {} runs written to {}; noise floor {:.2} µg\nWhat they hide is sealed in {}; open it when you \
-             have made up your mind:  tempco reveal {}",
-            recording.rows(),
-            recording.runs.len(),
-            output.display(),
-            // Of the scenario as it is known: that of the recording might tell.
-            truth.noise_floor_ug,
-            envelope.display(),
-            envelope.display()
-        ))
+        Ok(Sealed {
+            rows: recording.rows(),
+            runs: recording.runs.len(),
+            noise_floor_ug: truth.noise_floor_ug,
+            campaign: output.to_owned(),
+            envelope,
+        })
     }
 
     fn options(&self) -> BlindOptions {

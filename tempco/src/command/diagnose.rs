@@ -1,0 +1,68 @@
+//! `tempco diagnose MODEL DATA`
+
+use crate::data::Data;
+use crate::failure::{Answer, Failure};
+use crate::progress::spinner;
+use crate::render::diagnosis;
+use clap::Args;
+use std::path::{Path, PathBuf};
+use trainer::campaign::Campaign;
+use trainer::diagnose::{Diagnosis, Verdict, diagnose};
+use trainer::model::Model;
+use trainer::progress::Quiet;
+
+/// Says which physical effects a model lacks, how sure that is, and what the measurements can't tell.
+#[derive(Args)]
+#[command(after_help = "Example:  tempco diagnose model.toml campaign.csv")]
+pub struct Diagnose {
+    /// Model file
+    model: PathBuf,
+
+    #[command(flatten)]
+    data: Data,
+
+    /// Exit with 1 if anything is missing, named or not
+    #[arg(long)]
+    fail_if_missing: bool,
+
+    /// Prints one JSON object instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+impl Diagnose {
+    pub fn run(&self) -> Result<Answer, Failure> {
+        let diagnosis = diagnosed(&Model::read(&self.model)?, &self.data.read()?)?;
+        if self.json {
+            anstream::println!("{:#}", serde_json::json!(diagnosis));
+        } else {
+            anstream::println!("{}", diagnosis::text(&diagnosis));
+            anstream::println!("Next:  {}", next(&diagnosis, &self.model, &self.data.command_line()));
+        }
+        let missing = diagnosis.verdict != Verdict::NothingMissing;
+        Ok(if self.fail_if_missing && missing { Answer::No } else { Answer::Yes })
+    }
+}
+
+/// Diagnoses, and shows that it is at work.
+pub fn diagnosed(model: &Model, campaign: &Campaign) -> Result<Diagnosis, Failure> {
+    let spinner = spinner("diagnosing");
+    let diagnosis = diagnose(model, campaign, &Quiet);
+    spinner.finish_and_clear();
+    Ok(diagnosis?)
+}
+
+/// What a person types next.
+fn next(diagnosis: &Diagnosis, model: &Path, data: &str) -> String {
+    let model = model.display();
+    if let Some(effect) = diagnosis::first_to_add(diagnosis) {
+        return format!("tempco add {model} {effect} {data} -o better.toml");
+    }
+    if let Some(formula) = diagnosis.unexplained.as_ref().and_then(|unexplained| unexplained.formula.as_ref()) {
+        return format!("tempco add {model} --expression \"{formula}\" {data} -o better.toml");
+    }
+    match diagnosis.verdict {
+        Verdict::NothingMissing => format!("tempco export {model} -o calibration.hex"),
+        _ => format!("tempco compare {model} {data}"),
+    }
+}
