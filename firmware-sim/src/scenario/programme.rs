@@ -83,11 +83,16 @@ impl Programme {
         self
     }
 
-    /// Sends the chamber to another temperature.
+    /// Sends the chamber to another node.
     pub fn send_to(&mut self, temperature_c: f64) -> &mut Self {
+        self.now.node += 1;
+        self.step_to(temperature_c)
+    }
+
+    /// Sends the chamber elsewhere while recording goes on: what differs from soak to soak can't leap with a set point.
+    pub fn step_to(&mut self, temperature_c: f64) -> &mut Self {
         self.now.from_c = temperature_c;
         self.now.to_c = temperature_c;
-        self.now.node += 1;
         self
     }
 
@@ -109,7 +114,6 @@ impl Programme {
 
     /// Records while the set point goes straight to another temperature.
     pub fn record_towards(&mut self, temperature_c: f64, duration_s: f64) -> &mut Self {
-        self.now.node += 1;
         self.now.to_c = temperature_c;
         self.record(duration_s);
         self.now.from_c = temperature_c;

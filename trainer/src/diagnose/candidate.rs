@@ -6,6 +6,7 @@ use super::layout::Layout;
 use super::sum_channel::{Response, SumChannel, response};
 use super::whitening::Columns;
 use crate::campaign::Campaign;
+use crate::expression::Expression;
 use crate::fit::effects::Chosen;
 use firmware_core::effect::{self, About, Parameter, Role};
 use rayon::prelude::*;
@@ -26,6 +27,8 @@ pub(super) struct Candidate {
 
 /// Amplitudes are tried at this share of their bound: formulas are linear in them.
 const UNIT: f64 = 1e-3;
+/// And those of formulas at this, g per unit.
+const FORMULA_UNIT: f64 = 1e-6;
 /// Shapes along one logarithmic axis.
 const SHAPES: usize = 14;
 /// Shapes along each of several axes.
@@ -77,7 +80,7 @@ pub(super) fn amplitudes(about: &About) -> Vec<usize> {
     parameters.filter(|(_, about)| about.role == Role::Amplitude).map(|(index, _)| index).collect()
 }
 
-/// The effects that the campaign has the channels for.
+/// The effects that the campaign has the channels for, and what channels that no effect follows might do.
 pub(super) fn with_channels(campaign: &Campaign) -> Vec<Chosen> {
     let chosen = |about: &'static About| {
         let Some(name) = about.channel else { return Some(Chosen::of(about)) };
@@ -85,7 +88,29 @@ pub(super) fn with_channels(campaign: &Campaign) -> Vec<Chosen> {
         let values: Vec<f64> = campaign.rows().map(|row| row.sample.channels[channel] as f64 * 1e-6).collect();
         Some(Chosen { channel, origin: crate::metrics::mean(&values), ..Chosen::of(about) })
     };
-    effect::ALL.iter().filter(|about| about.is_on_device() && about.name != "expression").filter_map(|about| chosen(about)).collect()
+    let catalogue = effect::ALL.iter().filter(|about| about.is_on_device() && !about.takes_program());
+    let mut found: Vec<Chosen> = catalogue.filter_map(|about| chosen(about)).collect();
+    let program = effect::ALL.iter().find(|about| about.takes_program());
+    for (about, channel) in program.into_iter().flat_map(|about| strangers(campaign).map(move |name| (about, name))) {
+        let texts = FORMULAS.iter().map(|formula| formula.replace('#', channel));
+        let parsed = texts.filter_map(|text| Expression::parse(&text, &campaign.channels).ok());
+        found.extend(parsed.map(|expression| Chosen { expression: Some(expression), ..Chosen::of(about) }));
+    }
+    found
+}
+
+/// How a channel that no effect follows may act; `#` is its name.
+const FORMULAS: [&str; 5] = ["#", "#^2", "# * temperature_c", "# * level_g", "# * temperature_rate"];
+
+/// Channels that no effect of the catalogue follows.
+fn strangers(campaign: &Campaign) -> impl Iterator<Item = &String> {
+    let followed = |name: &&String| effect::ALL.iter().any(|about| about.channel == Some(name.as_str()));
+    campaign.channels.iter().filter(move |name| !followed(name))
+}
+
+/// What a contender is called: the effect's name, or the formula.
+pub(super) fn name_of(effect: &Chosen) -> &str {
+    effect.expression.as_ref().map_or(effect.about.name, Expression::text)
 }
 
 fn shapes(effect: &Chosen, layout: &Layout) -> Vec<Vec<f64>> {
@@ -94,7 +119,9 @@ fn shapes(effect: &Chosen, layout: &Layout) -> Vec<Vec<f64>> {
     let mut found = vec![Vec::new()];
     for about in effect.about.parameters {
         let choices: Vec<f64> = match about.role {
+            Role::Amplitude if effect.expression.is_some() => vec![FORMULA_UNIT],
             Role::Amplitude => vec![about.high * UNIT],
+            Role::Shape if effect.expression.as_ref().is_some_and(|expression| expression.leaves_idle(about)) => vec![about.start],
             Role::Origin => vec![effect.origin],
             Role::Shape if placed => WIDTHS.to_vec(),
             Role::Shape => logarithmic(about, if searched > 1 { SHAPES_OF_SEVERAL } else { SHAPES }),

@@ -2,7 +2,7 @@
 
 use super::DiagnoseError;
 use super::answer::{Diagnosis, Estimate, Finding, Noise, Unexplained, Verdict};
-use super::candidate::{Candidate, with_channels};
+use super::candidate::{Candidate, name_of, with_channels};
 use super::case::{Case, Noises};
 use super::evidence::compressed;
 use super::instrument::{Instrument, Known};
@@ -21,7 +21,7 @@ use firmware_core::effect::Role;
 use std::collections::BTreeMap;
 
 /// Evidence that an effect must have: twice the logarithm of the likelihood ratio beyond its parameters' price.
-const ENOUGH: f64 = 15.0;
+const ENOUGH: f64 = 25.0;
 /// Most findings.
 const MOST_FINDINGS: usize = 4;
 /// Effects whose evidence differs by less are confounded; and by less than this share, as no formula is exact.
@@ -87,6 +87,8 @@ struct Findings {
     noises: [Noises; 2],
     /// Most evidence of what would have to leave its physical bounds, at the end.
     strained: f64,
+    /// A channel's course that explains what no effect does.
+    formula: Option<Contender>,
 }
 
 fn search(
@@ -96,8 +98,13 @@ fn search(
     noises: Noises,
     progress: &dyn Progress,
 ) -> Result<Findings, DiagnoseError> {
-    let mut found =
-        Findings { known: start.clone(), steps: Vec::new(), noises: [noises; 2], strained: f64::NEG_INFINITY };
+    let mut found = Findings {
+        known: start.clone(),
+        steps: Vec::new(),
+        noises: [noises; 2],
+        strained: f64::NEG_INFINITY,
+        formula: None,
+    };
     while found.steps.len() < MOST_FINDINGS {
         if progress.cancelled() {
             return Err(DiagnoseError::Cancelled);
@@ -109,6 +116,11 @@ fn search(
         if next.winner.evidence < ENOUGH {
             found.strained = next.strained;
             found.noises[1] = next.noises;
+            break;
+        }
+        if next.winner.effect.expression.is_some() {
+            // No effect that anybody knows follows this channel: it is described, not explained.
+            found.formula = Some(next.winner);
             break;
         }
         let noises = next.winner.noises.unwrap_or(found.noises[1]);
@@ -126,7 +138,7 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
     let structure = found.noises.map(|noises| structure_ug(&noises.delta));
     let structured = structure[1] > STRUCTURE * case.sample_ug;
     let futile = structured && structure[1] > (1.0 - REMOVED) * structure[0];
-    let unexplained = structured || found.strained > SURELY_STRAINED;
+    let unexplained = structured || found.strained > SURELY_STRAINED || found.formula.is_some();
     if futile {
         found.known = start.clone();
         found.steps.clear();
@@ -152,7 +164,7 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
         explainable: explainable(residual_ug, residual_after_ug, &found.noises[1].delta),
         findings,
         unobservable: Vec::new(),
-        unexplained: unexplained.then(|| case.unexplained(&found.known, &found.noises[1], structure[1], &dependences)),
+        unexplained: unexplained.then(|| case.unexplained(&found, structure[1], &dependences, campaign)),
         dependences,
         noise: noise(&found.noises[1].delta),
     }
@@ -244,22 +256,28 @@ impl Case<'_> {
 
     fn unexplained(
         &self,
-        known: &Known,
-        noises: &Noises,
+        found: &Findings,
         structure_ug: f64,
         dependences: &[super::answer::Dependence],
+        campaign: &Campaign,
     ) -> Unexplained {
-        let period_s = self.period_s(known, noises);
-        let mut depends_on: Vec<(f64, String)> = dependences
-            .iter()
-            .filter(|one| one.chance_after < SURELY && one.after_ug > 0.0)
-            .map(|one| (one.after_ug, one.on.clone()))
-            .collect();
-        depends_on.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut depends_on: Vec<String> = depends_on.into_iter().map(|(_, name)| name).collect();
+        let surely = dependences.iter().filter(|one| one.chance_after < SURELY && one.after_ug > 0.0);
+        let mut sizes: Vec<(f64, &String)> = surely.map(|one| (one.after_ug, &one.on)).collect();
+        sizes.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut depends_on: Vec<String> = sizes.into_iter().map(|(_, name)| name.clone()).collect();
+        let first = |name: &str, depends_on: &mut Vec<String>| {
+            depends_on.retain(|other| other != name);
+            depends_on.insert(0, name.to_owned());
+        };
+        if let Some(formula) = &found.formula {
+            let followed = campaign.channels.iter().enumerate().find(|(index, _)| formula.effect.follows(*index));
+            followed.into_iter().for_each(|(_, name)| first(name, &mut depends_on));
+            let formula = Some(name_of(&formula.effect).to_owned());
+            return Unexplained { depends_on, period_s: None, formula, residual_ug: structure_ug };
+        }
+        let period_s = self.period_s(&found.known, &found.noises[1]);
         if period_s.is_some() || depends_on.is_empty() {
-            depends_on.retain(|name| name != "time_s");
-            depends_on.insert(0, "time_s".to_owned());
+            first("time_s", &mut depends_on);
         }
         Unexplained { depends_on, period_s, formula: None, residual_ug: structure_ug }
     }

@@ -74,7 +74,8 @@ impl<'a> Layout<'a> {
             for (effect, values) in known.effects.iter().zip(&known.coefficients.values) {
                 let mut coefficients = [0.0; MAX_PARAMETERS];
                 coefficients.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value);
-                let memory = effect::find::<f64>(effect.about.id).map(|effect| effect.memory(&coefficients));
+                let idle = effect.expression.as_ref().is_some_and(|text| effect.about.parameters.iter().any(|about| text.leaves_idle(about)));
+                let memory = effect::find::<f64>(effect.about.id).filter(|_| !idle).map(|effect| effect.memory(&coefficients));
                 brought_along(stretch, memory.unwrap_or(Memory::None));
             }
         }

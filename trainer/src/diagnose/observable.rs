@@ -40,7 +40,7 @@ impl Screening {
         let why = |about: &&'static About| {
             let own: Vec<_> = shares.iter().filter(|(id, ..)| *id == about.id).collect();
             let excited = own.iter().any(|(_, size, _)| *size > NOTHING_UG);
-            (!own.is_empty() && !seen.contains(&about.id)).then(|| (about.name, reason(about, excited)))
+            (!own.is_empty() && !seen.contains(&about.id) && !about.takes_program()).then(|| (about.name, reason(about, excited)))
         };
         Some(Self { visible, hidden: effect::ALL.iter().filter_map(why).collect() })
     }
@@ -63,7 +63,7 @@ pub(super) fn unobservable(campaign: &Campaign, screening: &Screening) -> Vec<Un
         effect: about.name.to_owned(),
         why: format!("no {} column", about.channel.unwrap_or_default()),
     });
-    let known_only = effect::ALL.iter().filter(|about| !about.is_on_device()).map(|about| Unobservable {
+    let known_only = effect::ALL.iter().filter(|about| !about.is_on_device() && !about.takes_program()).map(|about| Unobservable {
         effect: about.name.to_owned(),
         why: "it is new at every start and counts as noise from run to run".to_owned(),
     });

@@ -1,6 +1,6 @@
 //! Which effects are missing: forward selection, each step judged with everything else free to adapt.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, name_of};
 use super::case::{Benches, Case, Freedom, Held, Left, Noises};
 use super::evidence::{Score, joined, width};
 use super::instrument::Known;
@@ -26,7 +26,7 @@ pub(super) struct Contender {
 
 impl Contender {
     fn is_same_effect(&self, other: &Self) -> bool {
-        self.effect.about.id == other.effect.about.id
+        name_of(&self.effect) == name_of(&other.effect)
     }
 
     /// Whether a shape was stopped by the bound of what makes physical sense, or sits where nothing was measured:
@@ -208,12 +208,12 @@ impl Case<'_> {
         });
         let mut best: Vec<Contender> = Vec::new();
         for (index, candidate) in candidates.iter().enumerate() {
-            if known.effects.iter().any(|effect| effect.about.id == candidate.effect.about.id) {
+            if known.effects.iter().any(|effect| name_of(effect) == name_of(&candidate.effect)) {
                 continue;
             }
             let score = benches.tied(&delta[index], sum.as_ref().map(|sum| &sum[index]));
             let contender = self.judged(candidate, &score);
-            match best.iter_mut().find(|other| other.effect.about.id == candidate.effect.about.id) {
+            match best.iter_mut().find(|other| other.is_same_effect(&contender)) {
                 Some(other) if other.evidence >= contender.evidence => {}
                 Some(other) => *other = contender,
                 None => best.push(contender),

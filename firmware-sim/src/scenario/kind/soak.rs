@@ -37,7 +37,7 @@ impl Soak {
     pub(super) fn write(&self, programme: &mut Programme, _random: &mut Random) {
         programme.turn_to(Position::tumble(self.position_deg));
         for temperature_c in &self.temperatures_c {
-            programme.send_to(*temperature_c).record(self.dwell_s);
+            programme.step_to(*temperature_c).record(self.dwell_s);
         }
     }
 }
