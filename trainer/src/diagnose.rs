@@ -1,12 +1,24 @@
-//! Which physical effect is missing.
+//! Which physical effect a model lacks: named, or called ambiguous, absent or unknown.
+//!
+//! ```text
+//! layout      the campaign in cells            instrument   residuals, and what retraining could change
+//! whitening   noise as a filter                sum_channel  the sum of the frequencies as a second witness
+//! noise_search its sizes                       candidate    every effect at every shape
+//!      └──────────── evidence: the score test ─────────────┘
+//!                        case: one campaign and one model, together
+//!          observable ─▶ search ─▶ judge ─▶ answer     held_out, dependence, period, separation
+//! ```
+//!
+//! `docs/diagnosis.md` tells how it works.
 
 mod answer;
 mod candidate;
 mod case;
 mod dependence;
 mod evidence;
-mod instrument;
 mod held_out;
+mod instrument;
+mod judge;
 mod layout;
 mod noise_search;
 mod observable;
@@ -17,8 +29,6 @@ mod sum_channel;
 mod whitening;
 
 pub use answer::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexplained, Unobservable, Verdict};
-
-mod judge;
 
 use crate::campaign::Campaign;
 use crate::model::Model;
@@ -41,6 +51,8 @@ pub enum DiagnoseError {
 }
 
 /// Which physical effects `model` lacks, as far as `campaign` can tell.
+///
+/// Same model, same campaign: same answer, on any number of threads.
 ///
 /// # Errors
 /// [`DiagnoseError`] says what is missing.

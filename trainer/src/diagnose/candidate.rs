@@ -7,7 +7,7 @@ use super::sum_channel::{Response, SumChannel, response};
 use super::whitening::Columns;
 use crate::campaign::Campaign;
 use crate::expression::Expression;
-use crate::fit::effects::Chosen;
+use crate::fit::effects::{Chosen, Deed};
 use firmware_core::effect::{self, About, Parameter, Role};
 use rayon::prelude::*;
 
@@ -39,7 +39,7 @@ const WIDTHS: [f64; 3] = [0.7, 2.0, 6.0];
 impl Candidate {
     /// All of them. `shown` says which effects this campaign can show.
     pub fn all(instrument: &Instrument, layout: &Layout, sum: Option<&SumChannel>, shown: &[Chosen]) -> Vec<Self> {
-        let still = vec_of_rest(layout);
+        let still = at_rest(layout);
         let shapes: Vec<(Chosen, Vec<f64>)> =
             shown.iter().flat_map(|effect| shapes(effect, layout).into_iter().map(|values| (effect.clone(), values))).collect();
         let of = |(effect, values): (Chosen, Vec<f64>)| Self::new(instrument, layout, sum, &still, effect, values);
@@ -125,7 +125,7 @@ fn shapes(effect: &Chosen, layout: &Layout) -> Vec<Vec<f64>> {
             Role::Origin => vec![effect.origin],
             Role::Shape if placed => WIDTHS.to_vec(),
             Role::Shape => logarithmic(about, if searched > 1 { SHAPES_OF_SEVERAL } else { SHAPES }),
-            Role::Location => places(about, layout, found.last().map_or(1.0, |values: &Vec<f64>| values[1])),
+            Role::Location => places(about, layout),
         };
         found = found.iter().flat_map(|values| choices.iter().map(move |choice| extended(values, *choice))).collect();
     }
@@ -141,9 +141,9 @@ fn logarithmic(about: &Parameter, count: usize) -> Vec<f64> {
     (0..count).map(|k| about.low * (about.high / about.low).powf(part(k))).collect()
 }
 
-/// Places on the temperature axis as dense as the narrowest feature; other axes at three values.
-fn places(about: &Parameter, layout: &Layout, _width: f64) -> Vec<f64> {
-    if !about.unit.eq("°C") {
+/// Places on the temperature axis as dense as narrow features need; other axes at three values.
+fn places(about: &Parameter, layout: &Layout) -> Vec<f64> {
+    if about.unit != "°C" {
         return vec![0.4 * about.low, 0.0, 0.4 * about.high];
     }
     let zero_c = f64::from(layout.scale.temperature_zero_uc) * 1e-6;
@@ -155,8 +155,8 @@ fn places(about: &Parameter, layout: &Layout, _width: f64) -> Vec<f64> {
 /// Distance between places, °C.
 const PLACE_STEP_C: f64 = 1.5;
 
-fn vec_of_rest(layout: &Layout) -> Deeds {
-    layout.stretches.iter().map(|stretch| vec![crate::fit::effects::Deed::default(); stretch.cells.len()]).collect()
+fn at_rest(layout: &Layout) -> Deeds {
+    layout.stretches.iter().map(|stretch| vec![Deed::default(); stretch.cells.len()]).collect()
 }
 
 fn difference(a: &Columns, b: &Columns) -> Columns {

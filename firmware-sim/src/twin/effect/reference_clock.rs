@@ -5,8 +5,9 @@
 //! ```
 //!
 //! Both frequencies are off by the same fraction: 41 mHz per ppm in each fork, but only 0.9 µg in the bias and 1 ppm
-//! in the scale factor. A constant y0 is part of any calibration; what shows is its change: a retrace drawn with
-//! every power-on, and ageing. Typical: 0.5–2.5 ppm for a compensated crystal, ±20 ppm for a plain one, 1 ppm a year.
+//! in the scale factor. A constant y0 is part of any calibration; what shows is its change: ageing, and a retrace
+//! drawn with every power-on, off by default. Typical: 0.5–2.5 ppm for a compensated crystal, ±20 ppm for a plain one,
+//! 1 ppm a year.
 //! Crystal oscillator data sheets; IEEE Std 1293, scale-factor error.
 
 use serde::{Deserialize, Serialize};
@@ -30,7 +31,7 @@ pub struct ReferenceClock {
 
 impl Default for ReferenceClock {
     fn default() -> Self {
-        Self { offset_ppm: 0.0, retrace_ppm: 1.0, ppm_per_day: 0.003 }
+        Self { offset_ppm: 0.0, retrace_ppm: 0.0, ppm_per_day: 0.003 }
     }
 }
 

@@ -1,0 +1,108 @@
+//! What is hidden is named, what is not there is not, and what nobody knows is called unknown.
+//!
+//! A small part of the blind benchmark (`cargo run --release -p tests --example blind_benchmark`).
+
+use firmware_sim::scenario::{BlindOptions, Scenario};
+use firmware_sim::twin;
+use std::ops::ControlFlow;
+use tempfile::TempDir;
+use trainer::campaign::{Campaign, HoldOut, ReadOptions};
+use trainer::diagnose::{Diagnosis, Verdict, diagnose};
+use trainer::model::Model;
+use trainer::progress::Quiet;
+use trainer::train::{TrainSettings, train};
+
+const SHORT: &str = include_str!("scenarios/short.toml");
+
+/// A campaign in which these effects are hidden, each about so many times the noise, through a file as a user's would come.
+fn measured(hidden: &[&str], times_noise: f64, seed: u64) -> Campaign {
+    let mut scenario = Scenario::from_toml(SHORT).expect("a scenario");
+    for name in hidden {
+        let options = BlindOptions {
+            candidates: vec![(*name).to_owned()],
+            at_least: 1,
+            at_most: 1,
+            weakest: 0.9 * times_noise,
+            strongest: times_noise,
+        };
+        scenario = scenario.blinded(seed, &options).expect("the scenario excites it").0;
+    }
+    let recording = twin::simulate(&scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
+    let folder = TempDir::new().expect("a folder");
+    let file = folder.path().join("campaign.csv");
+    recording.write_csv(&mut std::fs::File::create(&file).expect("a file")).expect("written");
+    Campaign::read(&[file], &ReadOptions::default()).expect("a campaign")
+}
+
+fn model(campaign: &Campaign) -> Model {
+    let split = campaign.split(&HoldOut::LastOfEachKind).expect("a split");
+    train(campaign, &split, &TrainSettings { restarts: 4, ..TrainSettings::new(1) }, &Quiet).expect("a model").model
+}
+
+fn diagnosis(hidden: &[&str], times_noise: f64, seed: u64) -> Diagnosis {
+    let campaign = measured(hidden, times_noise, seed);
+    diagnose(&model(&campaign), &campaign, &Quiet).expect("a diagnosis")
+}
+
+fn named(diagnosis: &Diagnosis) -> Vec<&str> {
+    diagnosis.findings.iter().map(|finding| finding.effect.as_str()).collect()
+}
+
+#[test]
+fn what_is_hidden_is_named_and_nothing_else() {
+    for (seed, name) in (1..).zip(["thermal-lag", "warm-up", "thermal-hysteresis", "supply-voltage"]) {
+        let diagnosis = diagnosis(&[name], 5.0, seed);
+        assert_eq!(named(&diagnosis), [name], "{diagnosis:#?}");
+        assert!(diagnosis.residual_after_ug < 0.6 * diagnosis.residual_ug, "{diagnosis:#?}");
+        assert!(diagnosis.explainable > 0.8, "{diagnosis:#?}");
+    }
+}
+
+#[test]
+fn two_effects_are_both_named() {
+    let diagnosis = diagnosis(&["thermal-lag", "supply-voltage"], 5.0, 5);
+    let mut names = named(&diagnosis);
+    names.sort_unstable();
+    assert_eq!(names, ["supply-voltage", "thermal-lag"], "{diagnosis:#?}");
+}
+
+#[test]
+fn where_nothing_is_hidden_nothing_is_named() {
+    for seed in 6..=8 {
+        let diagnosis = diagnosis(&[], 0.0, seed);
+        assert_eq!(diagnosis.verdict, Verdict::NothingMissing, "seed {seed}: {diagnosis:#?}");
+        assert!(diagnosis.findings.is_empty() && diagnosis.unexplained.is_none());
+    }
+}
+
+#[test]
+fn what_nobody_knows_is_called_unexplained() {
+    for (seed, name) in [(9, "x-telegraph"), (10, "x-periodic-interference")] {
+        let diagnosis = diagnosis(&[name], 5.0, seed);
+        assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{name}: {diagnosis:#?}");
+        assert!(diagnosis.findings.is_empty(), "{name}: {diagnosis:#?}");
+    }
+}
+
+#[test]
+fn a_model_that_has_the_effect_misses_it_no_more() {
+    let campaign = measured(&["warm-up"], 5.0, 11);
+    let split = campaign.split(&HoldOut::LastOfEachKind).expect("a split");
+    let effects = vec![trainer::train::EffectChoice::named("warm-up")];
+    let settings = TrainSettings { restarts: 4, effects, ..TrainSettings::new(1) };
+    let model = train(&campaign, &split, &settings, &Quiet).expect("a model").model;
+    let diagnosis = diagnose(&model, &campaign, &Quiet).expect("a diagnosis");
+    assert_eq!(diagnosis.verdict, Verdict::NothingMissing, "{diagnosis:#?}");
+}
+
+#[test]
+fn what_a_campaign_cannot_show_is_said() {
+    let diagnosis = diagnosis(&[], 0.0, 12);
+    let why = |name: &str| {
+        let found = diagnosis.unobservable.iter().find(|one| one.effect == name);
+        found.unwrap_or_else(|| panic!("{name}: {:#?}", diagnosis.unobservable)).why.as_str()
+    };
+    assert_eq!(why("pressure"), "no pressure_pa column");
+    assert!(why("second-order").contains("static calibration takes it up"));
+    assert!(why("turn-on").contains("new at every start"));
+}
