@@ -3,11 +3,16 @@
 mod answer;
 mod candidate;
 mod case;
+mod dependence;
 mod evidence;
 mod instrument;
+mod held_out;
 mod layout;
 mod noise_search;
+mod observable;
+mod period;
 mod search;
+mod separation;
 mod sum_channel;
 mod whitening;
 
@@ -18,6 +23,7 @@ mod judge;
 use crate::campaign::Campaign;
 use crate::model::Model;
 use crate::progress::Progress;
+use crate::train::TrainError;
 use thiserror::Error;
 
 /// Why there is no diagnosis.
@@ -29,6 +35,9 @@ pub enum DiagnoseError {
     /// The residual's noise can't be told.
     #[error("the noise can't be told from these measurements: no two neighbouring rows share a position")]
     NoNoise,
+    /// The campaign lacks what the model's effects follow.
+    #[error(transparent)]
+    Effect(#[from] TrainError),
 }
 
 /// Which physical effects `model` lacks, as far as `campaign` can tell.

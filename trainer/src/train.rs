@@ -21,6 +21,8 @@ use crate::progress::{Progress, Quiet};
 use crate::residuals::{Residuals, arranged, residuals};
 use protocol::Weights;
 use task::Task;
+
+pub(crate) use task::choose;
 use thiserror::Error;
 
 /// A model and how it came about.

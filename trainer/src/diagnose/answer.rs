@@ -113,11 +113,15 @@ pub struct Dependence {
 pub struct Noise {
     /// From sample to sample, µg.
     pub sample_ug: f64,
-    /// Slow wander within a run (flicker), µg.
+    /// Wander within minutes, µg.
     pub flicker_ug: f64,
+    /// Wander within hours, µg.
+    pub wander_ug: f64,
     /// Random walk, µg per √h.
     pub walk_ug_per_sqrt_h: f64,
-    /// From position to position, µg: table.
+    /// From soaked node to soaked node, µg.
+    pub node_ug: f64,
+    /// Per g across the input axis, from position to position, µg: table.
     pub position_ug: f64,
     /// Per g across the input axis, from run to run, µg: mounting.
     pub mounting_ug: f64,

@@ -149,13 +149,15 @@ impl Case<'_> {
         let coarse = start.is_none();
         let first = start.map_or_else(|| first_guess(self.sample_ug, self.ug_per_c), |noises| noises.delta);
         let delta = noise(&self.layout, &left.delta, &freedom.delta, first, coarse);
-        let parts = self.sum.as_ref().zip(left.sum.as_ref()).zip(freedom.sum.as_ref());
-        let sum = parts.map(|((channel, residual), freedom)| {
-            let known = start.and_then(|noises| noises.sum);
-            let first = known.unwrap_or_else(|| first_guess(channel.sample, channel.per_c));
-            noise(&self.layout, residual, freedom, first, coarse)
-        });
-        Noises { delta, sum }
+        Noises { delta, sum: self.sum_noise(left, freedom, start) }
+    }
+
+    /// The same of the sum alone.
+    pub fn sum_noise(&self, left: &Left, freedom: &Freedom, start: Option<&Noises>) -> Option<NoiseModel> {
+        let (channel, residual, freedom) = (self.sum.as_ref()?, left.sum.as_ref()?, freedom.sum.as_ref()?);
+        let known = start.and_then(|noises| noises.sum);
+        let first = known.unwrap_or_else(|| first_guess(channel.sample, channel.per_c));
+        Some(noise(&self.layout, residual, freedom, first, start.is_none()))
     }
 
     /// What a step of each free parameter adds to difference and sum, by numeric differentiation.

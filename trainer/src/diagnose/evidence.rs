@@ -77,6 +77,23 @@ impl<'a> Bench<'a> {
         pairs.into_par_iter().map(of).collect()
     }
 
+    /// Of each candidate's columns: RMS size, and the greatest share of an amplitude that the instrument leaves.
+    pub fn shares_left(&self, columns: &Columns, widths: &[usize]) -> Vec<(f64, f64)> {
+        let cells: f64 = columns.iter().map(|run| run.nrows() as f64).sum();
+        let white = self.noise.whiten(self.layout, columns).columns;
+        let cross = product(&self.freedom, &white);
+        let solved = self.factor.solve(&cross);
+        let one = |column: usize| {
+            let square = |all: &Columns| all.iter().map(|run| run.column(column).norm_squared()).sum::<f64>();
+            let (size, own) = ((square(columns) / cells).sqrt(), square(&white));
+            let left = own - cross.column(column).dot(&solved.column(column));
+            (size, if own > 0.0 { (left / own).max(0.0).sqrt() } else { 0.0 })
+        };
+        let starts = widths.iter().scan(0, |next, width| Some(std::mem::replace(next, *next + width)));
+        let best = |a: (f64, f64), b: (f64, f64)| (a.0.max(b.0), a.1.max(b.1));
+        starts.zip(widths).map(|(start, width)| (start..start + width).map(one).fold((0.0, 0.0), best)).collect()
+    }
+
     fn score_white(&self, columns: &Columns) -> Score {
         let cross = product(&self.freedom, columns);
         let normal = product(columns, columns) - cross.tr_mul(&self.factor.solve(&cross));

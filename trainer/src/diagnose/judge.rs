@@ -1,26 +1,54 @@
 //! The course of a diagnosis: from noise and candidates through one finding after the other to the verdict.
 
-use super::answer::{Diagnosis, Estimate, Finding, Noise, Unobservable, Verdict};
+use super::DiagnoseError;
+use super::answer::{Diagnosis, Estimate, Finding, Noise, Unexplained, Verdict};
 use super::candidate::{Candidate, with_channels};
 use super::case::{Case, Noises};
 use super::evidence::compressed;
 use super::instrument::{Instrument, Known};
 use super::layout::Layout;
 use super::noise_search::first_guess;
-use super::search::Found;
+use super::observable::{Screening, unobservable};
+use super::search::{Contender, Found};
+use super::separation::separate;
 use super::sum_channel::SumChannel;
-use super::DiagnoseError;
+use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, POSITION, RUN, WALK, WANDER};
 use crate::campaign::Campaign;
 use crate::fit::dataset::InputScale;
 use crate::model::Model;
 use crate::progress::Progress;
+use firmware_core::effect::Role;
+use std::collections::BTreeMap;
 
 /// Evidence that an effect must have: twice the logarithm of the likelihood ratio beyond its parameters' price.
 const ENOUGH: f64 = 15.0;
 /// Most findings.
 const MOST_FINDINGS: usize = 4;
+/// Effects whose evidence differs by less are confounded; and by less than this share, as no formula is exact.
+const CONFOUNDED: f64 = 10.0;
+const CONFOUNDED_SHARE: f64 = 0.02;
+/// Wander within a run beyond so many times the sample noise is no noise of a resonator: something causes it.
+const STRUCTURE: f64 = 1.0;
+/// Findings must remove at least this share of the structure, or they are not its cause.
+const REMOVED: f64 = 0.5;
+/// Steps of the last fit of all findings together.
+const LAST_STEPS: usize = 12;
 
 pub(super) fn judge(model: &Model, campaign: &Campaign, progress: &dyn Progress) -> Result<Diagnosis, DiagnoseError> {
+    let mut case = case(model, campaign)?;
+    let start = in_model(model, campaign)?;
+    case.layout.remember(&start);
+    let shown = with_channels(campaign);
+    let candidates = Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), &shown);
+    let noises = case.noises(&case.left(&start), &case.stiff(&start), None);
+    let screening = Screening::new(&case, &start, candidates, &noises).ok_or(DiagnoseError::NoNoise)?;
+    let found = search(&mut case, &start, &screening.visible, noises, progress)?;
+    let mut diagnosis = answer(&case, campaign, &start, found);
+    diagnosis.unobservable = unobservable(campaign, &screening);
+    Ok(diagnosis)
+}
+
+fn case<'a>(model: &Model, campaign: &'a Campaign) -> Result<Case<'a>, DiagnoseError> {
     let scale = InputScale {
         delta_f_zero_uhz: model.scaling.delta_f_zero_uhz,
         delta_f_half_span_hz: f64::from(model.scaling.delta_f_gain_per_hz).recip(),
@@ -33,84 +61,206 @@ pub(super) fn judge(model: &Model, campaign: &Campaign, progress: &dyn Progress)
     let ug_per_c = instrument.ug_per_c(&layout);
     let freedom = compressed(&layout, &first_guess(sample_ug, ug_per_c), &instrument.freedom(&layout));
     let sum = SumChannel::new(&layout);
-    let mut case = Case { layout, instrument, freedom, sum, sample_ug, ug_per_c };
-    let trace = std::env::var("TRACE").is_ok();
-    let start = std::time::Instant::now();
-    let shown = with_channels(campaign);
-    let candidates = Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), &shown);
-    if trace {
-        eprintln!("{:?} cells {} candidates {} freedom {} sample {:.2}", start.elapsed(), case.layout.len(), candidates.len(), case.freedom[0].ncols(), sample_ug);
-    }
+    Ok(Case { layout, instrument, freedom, sum, sample_ug, ug_per_c })
+}
+
+/// The effects that the model has already.
+fn in_model(model: &Model, campaign: &Campaign) -> Result<Known, DiagnoseError> {
     let mut known = Known::NONE;
-    let mut noises = case.noises(&case.left(&known), &case.stiff(&known), None);
-    if trace {
-        eprintln!("{:?} noise {:.2?}", start.elapsed(), noises);
+    for (choice, effect) in crate::train::EffectChoice::of(model).iter().zip(&model.effects) {
+        let runs: Vec<_> = campaign.runs.iter().collect();
+        let chosen = crate::train::choose(choice, campaign, &runs)?;
+        let value = |name: &str, start: f64| effect.parameters.get(name).copied().unwrap_or(start);
+        let values: Vec<f64> = chosen.about.parameters.iter().map(|about| value(about.name, about.start)).collect();
+        known = known.with(&chosen, &values);
     }
-    let mut found: Vec<Found> = Vec::new();
-    while found.len() < MOST_FINDINGS {
+    Ok(known)
+}
+
+/// What was found, one after the other.
+struct Findings {
+    known: Known,
+    steps: Vec<Found>,
+    /// The noise with nothing found, and with all.
+    noises: [Noises; 2],
+    /// Most evidence of what would have to leave its physical bounds, at the end.
+    strained: f64,
+}
+
+fn search(
+    case: &mut Case,
+    start: &Known,
+    candidates: &[Candidate],
+    noises: Noises,
+    progress: &dyn Progress,
+) -> Result<Findings, DiagnoseError> {
+    let mut found =
+        Findings { known: start.clone(), steps: Vec::new(), noises: [noises; 2], strained: f64::NEG_INFINITY };
+    while found.steps.len() < MOST_FINDINGS {
         if progress.cancelled() {
             return Err(DiagnoseError::Cancelled);
         }
-        let Some(next) = case.missing(&known, &candidates, &noises) else { break };
-        if trace {
-            eprintln!("{:?} evidence {:.1} noise {:.2?}", start.elapsed(), next.winner.evidence, next.winner.noises);
-            for contender in std::iter::once(&next.winner).chain(&next.rivals).take(8) {
-                eprintln!("    {:24} {:12.1} {:?}", contender.effect.about.name, contender.evidence, contender.values);
-            }
+        let Some(next) = case.missing(&found.known, candidates, &found.noises[1]) else { break };
+        if found.steps.is_empty() {
+            found.noises[0] = next.noises;
         }
         if next.winner.evidence < ENOUGH {
+            found.strained = next.strained;
+            found.noises[1] = next.noises;
             break;
         }
-        known = known.with(&next.winner.effect, &next.winner.values);
-        noises = next.winner.noises.unwrap_or(noises);
+        let noises = next.winner.noises.unwrap_or(found.noises[1]);
+        let known = found.known.with(&next.winner.effect, &next.winner.values);
         let benches = case.benches(&case.left(&known), &case.stiff(&known), &noises).ok_or(DiagnoseError::NoNoise)?;
-        known = case.refit(None, &known, &benches, 12);
-        case.layout.remember(&known);
-        if trace {
-            eprintln!("   known {:?}", known.coefficients.values);
-            let view = case.left(&known);
-            let benches = case.benches(&view, &case.stiff(&known), &noises).unwrap();
-            let inn = benches.delta.innovations();
-            let mut all: Vec<(f64, usize, usize)> = Vec::new();
-            for (run, values) in inn.iter().enumerate() {
-                let chi: f64 = values.iter().map(|v| v * v).sum();
-                eprint!("  {}:{:.0}/{}", case.layout.stretches[run].run.name, chi, values.len());
-                all.extend(values.iter().enumerate().map(|(i, v)| (*v, run, i)));
-            }
-            eprintln!();
-            all.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-            for (v, run, i) in all.iter().take(25) {
-                let cell = &case.layout.stretches[*run].cells[*i];
-                let row = &case.layout.stretches[*run].run.rows[cell.rows.start];
-                eprintln!("     {v:8.1} {} cell {i} time {:.0} ton {:.0} T {:.2} a {:.2} n {} e {:.1}", case.layout.stretches[*run].run.name, cell.time_s, row.sample.power_on_us as f64 * 1e-6, f64::from(row.sample.temperature_uc) * 1e-6, cell.level_g, cell.samples, view.delta[*run][(*i, 0)]);
-            }
-        }
-        found.push(next);
+        found.known = case.refit(None, &known, &benches, LAST_STEPS);
+        found.noises[1] = noises;
+        case.layout.remember(&found.known);
+        found.steps.push(next);
     }
-    let _ = (Estimate { value: 0.0, sigma: 0.0 }, Unobservable { effect: String::new(), why: String::new() });
-    let findings: Vec<Finding> = found
-        .iter()
-        .map(|found| Finding {
-            effect: found.winner.effect.about.name.to_owned(),
-            residual_before_ug: 0.0,
-            residual_after_ug: 0.0,
-            evidence: found.winner.evidence,
-            parameters: Default::default(),
-            confounded_with: Vec::new(),
-            separate_by: None,
-        })
-        .collect();
-    let _: Option<Noises> = None;
-    Ok(Diagnosis {
-        verdict: if findings.is_empty() { Verdict::NothingMissing } else { Verdict::Missing },
-        residual_ug: 0.0,
-        residual_after_ug: 0.0,
-        noise_floor_ug: sample_ug,
-        explainable: 0.0,
+    Ok(found)
+}
+
+fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) -> Diagnosis {
+    let structure = found.noises.map(|noises| structure_ug(&noises.delta));
+    let unexplained = structure[1] > STRUCTURE * case.sample_ug || found.strained > ENOUGH;
+    let futile = unexplained && structure[1] > (1.0 - REMOVED) * structure[0];
+    if futile {
+        found.known = start.clone();
+        found.steps.clear();
+    }
+    let dependences = case.dependences(start, &found.known, &found.noises[1], &campaign.channels);
+    let findings = findings(case, start, &found);
+    let residual_ug = findings.first().map_or_else(
+        || case.held_out_ug(start, &found.noises[1]),
+        |finding| finding.residual_before_ug,
+    );
+    let residual_after_ug = findings.last().map_or(residual_ug, |finding| finding.residual_after_ug);
+    let verdict = match findings.first() {
+        None if unexplained => Verdict::Unexplained,
+        None => Verdict::NothingMissing,
+        Some(first) if first.confounded_with.is_empty() => Verdict::Missing,
+        Some(_) => Verdict::Ambiguous,
+    };
+    Diagnosis {
+        verdict,
+        residual_ug,
+        residual_after_ug,
+        noise_floor_ug: case.sample_ug,
+        explainable: explainable(residual_ug, residual_after_ug, &found.noises[1].delta),
         findings,
         unobservable: Vec::new(),
-        unexplained: None,
-        dependences: Vec::new(),
-        noise: Noise { sample_ug, flicker_ug: 0.0, walk_ug_per_sqrt_h: 0.0, position_ug: 0.0, mounting_ug: 0.0, run_ug: 0.0 },
-    })
+        unexplained: unexplained.then(|| case.unexplained(&found.known, &found.noises[1], structure[1], &dependences)),
+        dependences,
+        noise: noise(&found.noises[1].delta),
+    }
 }
+
+/// Wander within a run, µg RMS over an hour.
+fn structure_ug(noise: &NoiseModel) -> f64 {
+    let [flicker, wander] = [noise.parts[FLICKER], noise.parts[WANDER]];
+    (2.0 * flicker.powi(2) + wander.powi(2)).sqrt()
+}
+
+fn findings(case: &Case, start: &Known, found: &Findings) -> Vec<Finding> {
+    let sigmas = case.sigmas(&found.known, &found.noises[1]);
+    let mut residual_ug = case.held_out_ug(start, &found.noises[1]);
+    let mut known = start.clone();
+    let mut findings = Vec::new();
+    for (index, step) in found.steps.iter().enumerate() {
+        let at = start.effects.len() + index;
+        known = known.with(&found.known.effects[at], &found.known.coefficients.values[at]);
+        let after_ug = case.held_out_ug(&known, &found.noises[1]);
+        let name = step.winner.effect.about.name;
+        let confounded_with = confounded(step);
+        findings.push(Finding {
+            effect: name.to_owned(),
+            residual_before_ug: residual_ug,
+            residual_after_ug: after_ug,
+            evidence: step.winner.evidence,
+            parameters: parameters(&found.known, &sigmas, at),
+            separate_by: confounded_with.first().map(|other| separate(name, other)),
+            confounded_with,
+        });
+        residual_ug = after_ug;
+    }
+    findings
+}
+
+fn confounded(step: &Found) -> Vec<String> {
+    let enough = step.winner.evidence - CONFOUNDED.max(CONFOUNDED_SHARE * step.winner.evidence);
+    let close = |rival: &&Contender| rival.evidence > enough && rival.evidence > 0.0;
+    step.rivals.iter().filter(close).map(|rival| rival.effect.about.name.to_owned()).collect()
+}
+
+fn parameters(known: &Known, sigmas: &[Vec<f64>], at: usize) -> BTreeMap<String, Estimate> {
+    let (effect, values) = (&known.effects[at], &known.coefficients.values[at]);
+    let each = effect.about.parameters.iter().zip(values).zip(&sigmas[at]);
+    each.filter(|((about, _), _)| about.role != Role::Origin)
+        .map(|((about, value), sigma)| (about.name.to_owned(), Estimate { value: *value, sigma: *sigma }))
+        .collect()
+}
+
+/// Share of the square above what no model can remove.
+fn explainable(before_ug: f64, after_ug: f64, noise: &NoiseModel) -> f64 {
+    let parts: f64 = noise.parts.iter().take(WALK).map(|sigma| sigma * sigma).sum();
+    let excess = before_ug.powi(2) - (noise.sample.powi(2) + parts).min(after_ug.powi(2));
+    if excess > 0.0 { ((before_ug.powi(2) - after_ug.powi(2)) / excess).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+fn noise(noise: &NoiseModel) -> Noise {
+    Noise {
+        sample_ug: noise.sample,
+        flicker_ug: noise.parts[FLICKER],
+        wander_ug: noise.parts[WANDER],
+        walk_ug_per_sqrt_h: noise.parts[WALK] * 60.0,
+        node_ug: noise.parts[NODE],
+        position_ug: noise.parts[POSITION],
+        mounting_ug: noise.parts[MOUNTING],
+        run_ug: noise.parts[RUN],
+    }
+}
+
+impl Case<'_> {
+    /// Standard uncertainties of all coefficients, effect by effect.
+    fn sigmas(&self, known: &Known, noises: &Noises) -> Vec<Vec<f64>> {
+        let parameters = known.coefficients.to_parameters(&known.effects);
+        let covariance = self.benches(&self.left(known), &self.stiff(known), noises).and_then(|benches| {
+            let (delta, sum) = self.tangents(None, known);
+            Some(benches.normal(&delta, sum.as_ref()).cholesky()?.inverse())
+        });
+        let wider: Vec<f64> = parameters
+            .iter()
+            .enumerate()
+            .map(|(i, value)| value + covariance.as_ref().map_or(0.0, |covariance| covariance[(i, i)].max(0.0).sqrt()))
+            .collect();
+        // One sigma up in the optimiser's parameters, seen in the coefficients' own units.
+        let moved = known.at(&wider);
+        let pairs = moved.coefficients.values.iter().zip(&known.coefficients.values);
+        pairs.map(|(up, here)| up.iter().zip(here).map(|(up, here)| (up - here).abs()).collect()).collect()
+    }
+
+    fn unexplained(
+        &self,
+        known: &Known,
+        noises: &Noises,
+        structure_ug: f64,
+        dependences: &[super::answer::Dependence],
+    ) -> Unexplained {
+        let period_s = self.period_s(known, noises);
+        let mut depends_on: Vec<(f64, String)> = dependences
+            .iter()
+            .filter(|one| one.chance_after < SURELY && one.after_ug > 0.0)
+            .map(|one| (one.after_ug, one.on.clone()))
+            .collect();
+        depends_on.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut depends_on: Vec<String> = depends_on.into_iter().map(|(_, name)| name).collect();
+        if period_s.is_some() || depends_on.is_empty() {
+            depends_on.retain(|name| name != "time_s");
+            depends_on.insert(0, "time_s".to_owned());
+        }
+        Unexplained { depends_on, period_s, formula: None, residual_ug: structure_ug }
+    }
+}
+
+/// A dependence less likely by chance than this is one.
+const SURELY: f64 = 1e-4;

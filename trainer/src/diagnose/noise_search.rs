@@ -13,14 +13,14 @@ const WALK_S: f64 = 3600.0;
 const STEPS: [f64; 4] = [8.0, 3.0, 1.6, 1.2];
 /// A gain in −2 log likelihood that is not worth another round.
 const ENOUGH: f64 = 0.1;
-/// How often instrument and noise are fitted in turn.
+/// How often instrument and noise are fitted in turn when nothing is known.
 const TURNS: usize = 2;
 
 /// The most likely noise of a residual, the instrument's freedom used to the full; from `start`, or from a first guess
 /// when nothing is known.
 pub(super) fn noise(layout: &Layout, residual: &Columns, freedom: &Columns, start: NoiseModel, coarse: bool) -> NoiseModel {
     let mut noise = start;
-    for turn in 0..TURNS {
+    for turn in 0..if coarse { TURNS } else { 1 } {
         let Some(bench) = Bench::new(layout, noise, residual, freedom) else { return noise };
         let adapted = bench.adapted(residual, freedom);
         noise = search(layout, &adapted, noise, if coarse && turn == 0 { 0 } else { 1 });

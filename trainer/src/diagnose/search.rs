@@ -28,6 +28,22 @@ impl Contender {
         self.effect.about.id == other.effect.about.id
     }
 
+    /// Whether a shape was stopped by the bound of what makes physical sense: then it is something else.
+    pub fn is_strained(&self) -> bool {
+        let about = self.effect.about;
+        let good = |name: &str| GOOD_LIMITS.contains(&(about.name, name));
+        about.parameters.iter().zip(&self.values).any(|(parameter, value)| match parameter.role {
+            Role::Shape => {
+                !good(parameter.name) && (*value < parameter.low * AT_BOUND || *value * AT_BOUND > parameter.high)
+            }
+            Role::Location => {
+                let margin = (parameter.high - parameter.low) * (AT_BOUND - 1.0) * 0.5;
+                *value < parameter.low + margin || *value > parameter.high - margin
+            }
+            Role::Amplitude | Role::Origin => false,
+        })
+    }
+
     /// The effect by itself.
     pub fn alone(&self) -> Known {
         Known::NONE.with(&self.effect, &self.values)
@@ -41,14 +57,24 @@ pub(super) struct Found {
     pub winner: Contender,
     /// The others in order.
     pub rivals: Vec<Contender>,
+    /// Most evidence of an effect that would have to leave its physical bounds.
+    pub strained: f64,
+    /// The noise without it.
+    pub noises: Noises,
 }
 
 /// So many effects go from the screening into the final, as judged by the noise as estimated and by a small one.
-const FINALISTS: [usize; 2] = [5, 4];
+const FINALISTS: [usize; 2] = [4, 3];
 /// How often a finalist's parameters and noise are fitted in turn.
 const TURNS: usize = 2;
 /// Steps of each fit of the parameters.
 const REFINEMENTS: usize = 4;
+
+/// A shape this close to its bound, as a ratio, was stopped by it.
+const AT_BOUND: f64 = 1.05;
+/// Effects whose formula has a limit at a bound that makes sense: a rate not smoothed, a drift that does not end.
+const GOOD_LIMITS: [(&str, &str); 3] =
+    [("thermal-gradient", "tau_s"), ("aging", "tau_days"), ("aging", "order")];
 
 /// Everything that stays the same while contenders are compared.
 struct Scene {
@@ -79,8 +105,10 @@ impl Case<'_> {
             .filter_map(|contender| self.contend(&scene, contender))
             .collect();
         order.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let (strained, mut order): (Vec<_>, Vec<_>) = order.into_iter().partition(Contender::is_strained);
+        let strained = strained.first().map_or(f64::NEG_INFINITY, |contender| contender.evidence);
         let winner = (!order.is_empty()).then(|| order.remove(0))?;
-        Some(Found { winner, rivals: order })
+        Some(Found { winner, rivals: order, strained, noises: scene.noises })
     }
 
     fn scene(&self, known: &Known, noises: &Noises) -> Option<Scene> {
@@ -109,8 +137,14 @@ impl Case<'_> {
         for _ in 0..TURNS {
             let benches = self.benches(&scene.left, &scene.freedom, &noises)?;
             own = self.refit(Some(&scene.held), &own, &benches, REFINEMENTS);
-            let freedom = self.widened(&scene.freedom, &scene.held, &own);
-            noises = self.noises(&self.left_beside(Some(&scene.held), &own), &freedom, Some(&noises));
+            let mut freedom = self.widened(&scene.freedom, &scene.held, &own);
+            let mut left = self.left_beside(Some(&scene.held), &own);
+            if response(contender.effect.about) != Response::Told {
+                // The sum is as it was; its noise is known.
+                (left.sum, freedom.sum) = (None, None);
+            }
+            let fitted = self.noises(&left, &freedom, Some(&noises));
+            noises = Noises { delta: fitted.delta, sum: fitted.sum.or(noises.sum) };
         }
         let left = self.left_beside(Some(&scene.held), &own);
         let mut deviance = self.benches(&left, &scene.freedom, &noises)?.deviance();
@@ -140,7 +174,8 @@ impl Case<'_> {
             let score = bench.score(&bias);
             let share = (-score.right[0] / score.normal[(0, 0)]).clamp(-bound, bound);
             freed.sum = Some(sum.iter().zip(&bias).map(|(sum, bias)| sum + bias * share).collect());
-            noises = self.noises(&freed, &scene.freedom, Some(&noises));
+            let sum_only = Left { delta: Vec::new(), sum: freed.sum.clone() };
+            noises.sum = self.sum_noise(&sum_only, &scene.freedom, Some(&noises));
         }
         Some((freed, noises))
     }

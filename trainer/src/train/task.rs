@@ -145,7 +145,7 @@ fn max_gap_us(runs: &[&Run]) -> u32 {
 }
 
 /// Finds the effect and its channel.
-fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) -> Result<Chosen, TrainError> {
+pub(crate) fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) -> Result<Chosen, TrainError> {
     let about = effect::about(&choice.name).ok_or_else(|| TrainError::UnknownEffect(choice.name.clone()))?;
     if !about.is_on_device() {
         return Err(TrainError::NotOnDevice(choice.name.clone()));
