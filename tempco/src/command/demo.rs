@@ -30,9 +30,12 @@ pub struct Demo {
     output: PathBuf,
 
     /// Seed of every random number, and of what is hidden
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = SEED)]
     seed: u64,
 }
+
+/// Hides an effect of three times the noise: plain to a diagnosis, invisible to a reader of the table.
+const SEED: u64 = 18;
 
 /// The scenario that excites every effect.
 const SCENARIO: &str = "rich";
