@@ -75,9 +75,9 @@ impl Known {
 pub(super) type Deeds = Vec<Vec<Deed>>;
 
 /// Highest powers of frequency difference and temperature, and of both together, by which a retrained map may differ.
-const POWERS: (usize, usize, usize) = (3, 5, 6);
+const POWERS: (usize, usize, usize) = (3, 6, 7);
 /// How far it may differ from such a polynomial, as a share of the network's own size.
-const FREEDOM: f64 = 0.03;
+const FREEDOM: f64 = 0.1;
 /// Expected size of an output weight and of a hidden weight, as in training.
 const OUTPUT_SIZE: f64 = 10.0;
 /// And of a hidden one.

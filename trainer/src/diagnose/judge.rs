@@ -29,6 +29,8 @@ const CONFOUNDED: f64 = 10.0;
 const CONFOUNDED_SHARE: f64 = 0.02;
 /// Wander within a run beyond so many times the sample noise is no noise of a resonator: something causes it.
 const STRUCTURE: f64 = 1.0;
+/// Evidence of an effect beyond its physical bounds that tells of something unknown: formulas are not exact.
+const SURELY_STRAINED: f64 = 100.0;
 /// Findings must remove at least this share of the structure, or they are not its cause.
 const REMOVED: f64 = 0.5;
 /// Steps of the last fit of all findings together.
@@ -122,8 +124,9 @@ fn search(
 
 fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) -> Diagnosis {
     let structure = found.noises.map(|noises| structure_ug(&noises.delta));
-    let unexplained = structure[1] > STRUCTURE * case.sample_ug || found.strained > ENOUGH;
-    let futile = unexplained && structure[1] > (1.0 - REMOVED) * structure[0];
+    let structured = structure[1] > STRUCTURE * case.sample_ug;
+    let futile = structured && structure[1] > (1.0 - REMOVED) * structure[0];
+    let unexplained = structured || found.strained > SURELY_STRAINED;
     if futile {
         found.known = start.clone();
         found.steps.clear();
@@ -131,7 +134,7 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
     let dependences = case.dependences(start, &found.known, &found.noises[1], &campaign.channels);
     let findings = findings(case, start, &found);
     let residual_ug = findings.first().map_or_else(
-        || case.held_out_ug(start, &found.noises[1]),
+        || case.held_out(start, &found.noises[1]).residual_ug,
         |finding| finding.residual_before_ug,
     );
     let residual_after_ug = findings.last().map_or(residual_ug, |finding| finding.residual_after_ug);
@@ -163,13 +166,13 @@ fn structure_ug(noise: &NoiseModel) -> f64 {
 
 fn findings(case: &Case, start: &Known, found: &Findings) -> Vec<Finding> {
     let sigmas = case.sigmas(&found.known, &found.noises[1]);
-    let mut residual_ug = case.held_out_ug(start, &found.noises[1]);
+    let mut residual_ug = case.held_out(start, &found.noises[1]).residual_ug;
     let mut known = start.clone();
     let mut findings = Vec::new();
     for (index, step) in found.steps.iter().enumerate() {
         let at = start.effects.len() + index;
         known = known.with(&found.known.effects[at], &found.known.coefficients.values[at]);
-        let after_ug = case.held_out_ug(&known, &found.noises[1]);
+        let after_ug = case.held_out(&known, &found.noises[1]).residual_ug;
         let name = step.winner.effect.about.name;
         let confounded_with = confounded(step);
         findings.push(Finding {

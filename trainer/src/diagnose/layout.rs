@@ -5,7 +5,7 @@ use super::instrument::Known;
 use crate::fit::dataset::{InputScale, cells, mean};
 use firmware_core::{Memory, effect};
 use protocol::limits::MAX_PARAMETERS;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 /// One cell: the mean of neighbouring samples at one position.
 #[derive(Clone, Debug)]
@@ -83,6 +83,14 @@ impl<'a> Layout<'a> {
     /// Number of cells.
     pub fn len(&self) -> usize {
         self.stretches.iter().map(|stretch| stretch.cells.len()).sum()
+    }
+
+    /// From the lowest to the highest temperature, °C.
+    pub fn range_c(&self) -> RangeInclusive<f64> {
+        let zero_c = f64::from(self.scale.temperature_zero_uc) * 1e-6;
+        let (low, high) = self.cells().fold((f64::MAX, f64::MIN), |(low, high), cell| (low.min(cell.t), high.max(cell.t)));
+        let at = |t: f64| zero_c + t * self.scale.temperature_half_span_c;
+        at(low)..=at(high)
     }
 
     /// All cells in order.

@@ -9,6 +9,7 @@ use super::whitening::Columns;
 use crate::fit::effects::Chosen;
 use firmware_core::effect::Role;
 use rayon::prelude::*;
+use std::ops::RangeInclusive;
 
 /// How well one effect does.
 #[derive(Clone, Debug)]
@@ -28,18 +29,16 @@ impl Contender {
         self.effect.about.id == other.effect.about.id
     }
 
-    /// Whether a shape was stopped by the bound of what makes physical sense: then it is something else.
-    pub fn is_strained(&self) -> bool {
+    /// Whether a shape was stopped by the bound of what makes physical sense, or sits where nothing was measured:
+    /// then it is something else.
+    pub fn is_strained(&self, range_c: &RangeInclusive<f64>) -> bool {
         let about = self.effect.about;
         let good = |name: &str| GOOD_LIMITS.contains(&(about.name, name));
         about.parameters.iter().zip(&self.values).any(|(parameter, value)| match parameter.role {
             Role::Shape => {
                 !good(parameter.name) && (*value < parameter.low * AT_BOUND || *value * AT_BOUND > parameter.high)
             }
-            Role::Location => {
-                let margin = (parameter.high - parameter.low) * (AT_BOUND - 1.0) * 0.5;
-                *value < parameter.low + margin || *value > parameter.high - margin
-            }
+            Role::Location => parameter.unit == "°C" && !range_c.contains(value),
             Role::Amplitude | Role::Origin => false,
         })
     }
@@ -70,6 +69,8 @@ const TURNS: usize = 2;
 /// Steps of each fit of the parameters.
 const REFINEMENTS: usize = 4;
 
+/// Share of the evidence that must hold for runs that were left out.
+const FORETOLD: f64 = 0.25;
 /// A shape this close to its bound, as a ratio, was stopped by it.
 const AT_BOUND: f64 = 1.05;
 /// Effects whose formula has a limit at a bound that makes sense: a rate not smoothed, a drift that does not end.
@@ -105,10 +106,25 @@ impl Case<'_> {
             .filter_map(|contender| self.contend(&scene, contender))
             .collect();
         order.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-        let (strained, mut order): (Vec<_>, Vec<_>) = order.into_iter().partition(Contender::is_strained);
-        let strained = strained.first().map_or(f64::NEG_INFINITY, |contender| contender.evidence);
-        let winner = (!order.is_empty()).then(|| order.remove(0))?;
+        let (strained, mut order): (Vec<_>, Vec<_>) = order.into_iter().partition(|contender: &Contender| contender.is_strained(&self.layout.range_c()));
+        let strained = strained.first().filter(|contender| self.foretells(known, contender).unwrap_or(false));
+        let strained = strained.map_or(f64::NEG_INFINITY, |contender| contender.evidence);
+        // An effect must foretell runs that its parameters were not fitted to.
+        let winner = loop {
+            let next = (!order.is_empty()).then(|| order.remove(0))?;
+            if next.evidence < 0.0 || self.foretells(known, &next)? {
+                break next;
+            }
+        };
         Some(Found { winner, rivals: order, strained, noises: scene.noises })
+    }
+
+    /// Whether runs that were left out are explained better with the effect than without.
+    fn foretells(&self, known: &Known, contender: &Contender) -> Option<bool> {
+        let noises = contender.noises.as_ref()?;
+        let without = self.held_out(known, noises).deviance;
+        let with = self.held_out(&known.with(&contender.effect, &contender.values), noises).deviance;
+        Some(without - with > FORETOLD * contender.evidence.max(0.0))
     }
 
     fn scene(&self, known: &Known, noises: &Noises) -> Option<Scene> {
