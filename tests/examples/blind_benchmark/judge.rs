@@ -131,8 +131,10 @@ mod tests {
             noise: Noise {
                 sample_ug: 5.0,
                 flicker_ug: 0.0,
+                wander_ug: 0.0,
                 walk_ug_per_sqrt_h: 0.0,
                 position_ug: 0.0,
+                node_ug: 0.0,
                 mounting_ug: 0.0,
                 run_ug: 0.0,
             },
