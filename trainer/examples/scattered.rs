@@ -1,6 +1,6 @@
 //! The solver by itself, so that it can be compared with other solvers on equal terms.
 //!
-//! What `tempco train` puts around it for calibrations (anchors, a noise model, two passes) is left
+//! What `tempco train` puts around it for calibrations (anchors, a noise model, several passes) is left
 //! out. For each of so many restarts on the first campaign it prints, as soon as it has them, the RMS
 //! residuals on the first and on the second campaign, µg:
 //! `cargo run --release -p trainer --example scattered -- samples.csv truth.csv 30`.

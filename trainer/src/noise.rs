@@ -7,6 +7,9 @@ pub type RunResiduals = Vec<f64>;
 
 /// References closer than this belong to the same state, g.
 const SAME_STATE_G: f64 = 1e-3;
+/// A smaller share of neighbours meets at one reference by chance. Their inputs differ, and so does what
+/// the model misses of them.
+const LEAST_SHARE: f64 = 0.1;
 /// Median of |x − y| / √2 of two independent normal values, as a fraction of their σ.
 const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 
@@ -14,18 +17,20 @@ const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 ///
 /// From differences of neighbours within a state, so that whatever a model misses cancels as long as
 /// it is slower than the sampling. The median instead of the mean square, so that the steps at the
-/// beginning of a state don't count. `None` where no two neighbours share a state.
+/// beginning of a state don't count. `None` where neighbours share a state by chance at most.
 #[must_use]
 pub fn sample_sigma_g<'a>(runs: impl IntoIterator<Item = (&'a Run, &'a RunResiduals)>) -> Option<f64> {
     let mut steps: Vec<f64> = Vec::new();
+    let mut pairs = 0;
     for (run, residuals) in runs {
+        pairs += run.rows.len().saturating_sub(1);
         for (rows, pair) in run.rows.windows(2).zip(residuals.windows(2)) {
             if (rows[1].reference_g - rows[0].reference_g).abs() < SAME_STATE_G {
                 steps.push((pair[1] - pair[0]).abs());
             }
         }
     }
-    if steps.is_empty() {
+    if (steps.len() as f64) < LEAST_SHARE * pairs as f64 || steps.is_empty() {
         return None;
     }
     let middle = steps.len() / 2;
@@ -120,6 +125,26 @@ pub fn rms<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::Row;
+    use protocol::Sample;
+    use std::path::PathBuf;
+
+    #[test]
+    fn samples_that_meet_by_chance_tell_no_noise() {
+        let run = |levels: u64| Run {
+            name: "run".to_owned(),
+            kind: String::new(),
+            source: PathBuf::new(),
+            rows: (0..100).map(|k| row(k, (k * levels / 100) as f64)).collect(),
+        };
+        let residuals: RunResiduals = (0..100).map(|k| f64::from(k % 2)).collect();
+        assert_eq!(sample_sigma_g([(&run(98), &residuals)]), None);
+        assert!(sample_sigma_g([(&run(10), &residuals)]).is_some());
+    }
+
+    fn row(second: u64, reference_g: f64) -> Row {
+        Row { sample: Sample::from_difference(second * 1_000_000, 0, 0), reference_g, reference_sigma_g: None }
+    }
 
     #[test]
     fn scatter_is_told_apart_by_where_it_comes_from() {

@@ -48,7 +48,7 @@ impl Trained {
 /// One training from one start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Restart {
-    /// RMS residual on the training data, g.
+    /// RMS residual on the training data, g; before the best are trained on.
     pub residual_g: f64,
     /// Iterations made.
     pub iterations: usize,

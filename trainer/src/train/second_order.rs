@@ -32,6 +32,14 @@ const ANCHOR_GRID: i32 = 9;
 const STEEPEST_START: f64 = 2.5;
 const LIMITS: Limits = Limits { iterations: 200, decrease: 1e-5, step: 1e-9 };
 
+/// Most often that networks are trained on with the scatter that the best of them leaves. Where the polynomial
+/// misses much, the first network is still held too stiff to tell the noise; the second one rarely is.
+const REFINEMENTS: usize = 6;
+/// So many of the best restarts are trained on: which of them is best changes when data are believed more.
+const LEADERS: usize = 5;
+/// Scatter that falls to no less than this share has settled.
+const SETTLED: f64 = 0.95;
+
 /// Where along a shape's range, on a logarithmic scale, joint fits start.
 const SHAPE_STARTS: [f64; 6] = [0.1, 0.25, 0.4, 0.55, 0.7, 0.85];
 /// Amplitudes start as far from zero as gives shapes a slope to follow.
@@ -40,8 +48,9 @@ const FIRST_AMPLITUDE: f64 = 1e-6;
 /// Trains from every start.
 ///
 /// The polynomial tells a first time how much states and runs scatter, and so how far each may be
-/// believed; the best network tells it better, and is trained on with that. Effects join the best
-/// network from several shapes and are fitted together with it.
+/// believed; the best network tells it better, and the leaders are trained on with that until the
+/// scatter falls no further. Effects join the best network from several shapes and are fitted together
+/// with it.
 pub(super) fn search(task: &Task) -> Search {
     let first = Problem::new(task, &task.data, &task.noise(|datum| task.polynomial.evaluate(datum.x, datum.t)));
     let still = first.still_rows(task);
@@ -51,32 +60,50 @@ pub(super) fn search(task: &Task) -> Search {
     };
     let trials: Vec<Trial> = (0..task.settings.restarts).into_par_iter().filter_map(attempt).collect();
     let restarts = trials.iter().map(|trial| trial.restart).collect();
-    let best = least(trials).and_then(|trial| with_effects(task, &first, trial));
-    let refined = best.as_ref().and_then(|best| {
-        let known = Problem::new(task, &best.data, &Components::estimate(task.sigma_g, &best.scatter));
-        let trial = known.descend_moved(task, task.settings.restarts, &best.point)?;
-        Some(known.candidate(task, &trial))
-    });
-    Search { restarts, best: refined.or_else(|| best.map(|best| first.candidate(task, &best))) }
+    let best = with_effects(task, &first, leading(trials));
+    Search { restarts, best: refined(task, first, best) }
 }
 
-/// The trial of least cost; the first of equals, so that the number of threads doesn't matter.
-fn least(trials: Vec<Trial>) -> Option<Trial> {
-    trials.into_iter().filter(|trial| trial.cost.is_finite()).min_by(|a, b| a.cost.total_cmp(&b.cost))
+/// Trains the leaders on, each time with the scatter that the best of them leaves.
+fn refined(task: &Task, first: Problem, leaders: Vec<Trial>) -> Option<Candidate> {
+    let (mut problem, mut leaders) = (first, leaders);
+    for _ in 0..REFINEMENTS {
+        let best = leaders.first()?;
+        let known = Problem::new(task, &best.data, &Components::estimate(task.sigma_g, &best.scatter));
+        let attempt =
+            |(place, leader): (usize, &Trial)| known.descend_moved(task, task.settings.restarts + place, &leader.point);
+        let trained = leading(leaders.par_iter().enumerate().filter_map(attempt).collect());
+        let Some(next) = trained.first() else { break };
+        let settled = rms(&next.scatter) > SETTLED * rms(&best.scatter);
+        (problem, leaders) = (known, trained);
+        if settled {
+            break;
+        }
+    }
+    leaders.first().map(|best| problem.candidate(task, best))
+}
+
+/// The trials of least cost, best first; the first of equals, so that the number of threads doesn't matter.
+fn leading(mut trials: Vec<Trial>) -> Vec<Trial> {
+    trials.retain(|trial| trial.cost.is_finite());
+    trials.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    trials.truncate(LEADERS);
+    trials
 }
 
 /// Fits the task's effects together with the network, from several shapes.
-fn with_effects(task: &Task, problem: &Problem, best: Trial) -> Option<Trial> {
+fn with_effects(task: &Task, problem: &Problem, leaders: Vec<Trial>) -> Vec<Trial> {
     if task.effects.is_empty() {
-        return Some(best);
+        return leaders;
     }
-    let hidden = best.point.get(..NONLINEAR)?;
+    let Some(hidden) = leaders.first().and_then(|best| best.point.get(..NONLINEAR)) else { return Vec::new() };
     let attempt = |(index, start): (usize, Vec<f64>)| {
         let point: Vec<f64> = hidden.iter().chain(&start).copied().collect();
         problem.descend_moved(task, task.settings.restarts + index, &point)
     };
     let starts: Vec<_> = effect_starts(task).into_iter().enumerate().collect();
-    least(starts.into_par_iter().filter_map(attempt).collect())
+    // One leader: with effects every row's history is computed anew at each step.
+    leading(starts.into_par_iter().filter_map(attempt).collect()).into_iter().take(1).collect()
 }
 
 /// Effects known from an earlier model start where they were, the others at each of [`SHAPE_STARTS`].
