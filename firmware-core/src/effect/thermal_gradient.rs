@@ -24,7 +24,7 @@ pub const ABOUT: About = About {
             low: -0.1,
             high: 0.1,
         },
-        Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 5.0, low: 0.5, high: 3600.0 },
+        Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 5.0, low: 0.5, high: 300.0 },
     ],
     channel: None,
     needs: "temperature ramps at two rates, where the bias has different slopes over temperature",

@@ -40,8 +40,10 @@ impl Candidate {
     /// All of them. `shown` says which effects this campaign can show.
     pub fn all(instrument: &Instrument, layout: &Layout, sum: Option<&SumChannel>, shown: &[Chosen]) -> Vec<Self> {
         let still = at_rest(layout);
-        let shapes: Vec<(Chosen, Vec<f64>)> =
-            shown.iter().flat_map(|effect| shapes(effect, layout).into_iter().map(|values| (effect.clone(), values))).collect();
+        let shapes: Vec<(Chosen, Vec<f64>)> = shown
+            .iter()
+            .flat_map(|effect| shapes(effect, layout).into_iter().map(|values| (effect.clone(), values)))
+            .collect();
         let of = |(effect, values): (Chosen, Vec<f64>)| Self::new(instrument, layout, sum, &still, effect, values);
         shapes.into_par_iter().map(of).collect()
     }
@@ -121,7 +123,9 @@ fn shapes(effect: &Chosen, layout: &Layout) -> Vec<Vec<f64>> {
         let choices: Vec<f64> = match about.role {
             Role::Amplitude if effect.expression.is_some() => vec![FORMULA_UNIT],
             Role::Amplitude => vec![about.high * UNIT],
-            Role::Shape if effect.expression.as_ref().is_some_and(|expression| expression.leaves_idle(about)) => vec![about.start],
+            Role::Shape if effect.expression.as_ref().is_some_and(|expression| expression.leaves_idle(about)) => {
+                vec![about.start]
+            }
             Role::Origin => vec![effect.origin],
             Role::Shape if placed => WIDTHS.to_vec(),
             Role::Shape => logarithmic(about, if searched > 1 { SHAPES_OF_SEVERAL } else { SHAPES }),
@@ -162,4 +166,3 @@ fn at_rest(layout: &Layout) -> Deeds {
 fn difference(a: &Columns, b: &Columns) -> Columns {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
-

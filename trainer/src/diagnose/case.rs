@@ -81,7 +81,10 @@ const MOST_DAMPING: f64 = 1e6;
 impl Case<'_> {
     /// These effects, to be held.
     pub fn held(&self, known: &Known) -> Held {
-        Held { all: self.instrument.deeds(&self.layout, known), told: self.instrument.deeds(&self.layout, &known.told()) }
+        Held {
+            all: self.instrument.deeds(&self.layout, known),
+            told: self.instrument.deeds(&self.layout, &known.told()),
+        }
     }
 
     /// What these effects leave.
@@ -107,7 +110,11 @@ impl Case<'_> {
         let sum = self.sum.as_ref().map(|channel| {
             let free = known.each().filter(|one| response(one.effects[0].about) != Response::Told);
             let columns: Vec<Columns> = free.map(|one| self.alone(&one)).collect();
-            if columns.is_empty() { channel.freedom.clone() } else { stacked(&channel.freedom, &joined(&columns.iter().collect::<Vec<_>>())) }
+            if columns.is_empty() {
+                channel.freedom.clone()
+            } else {
+                stacked(&channel.freedom, &joined(&columns.iter().collect::<Vec<_>>()))
+            }
         });
         Freedom { delta: self.freedom.clone(), sum }
     }

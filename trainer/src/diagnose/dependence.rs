@@ -64,7 +64,8 @@ impl Case<'_> {
 
 fn rate(stretch: &Stretch, cell: &Cell) -> f64 {
     let rows = &stretch.run.rows;
-    let (first, last) = (rows[cell.rows.start.saturating_sub(1)].sample, rows[cell.rows.end.min(rows.len() - 1)].sample);
+    let (first, last) =
+        (rows[cell.rows.start.saturating_sub(1)].sample, rows[cell.rows.end.min(rows.len() - 1)].sample);
     let seconds = last.time_us.saturating_sub(first.time_us) as f64 * 1e-6;
     let warmer_c = f64::from(last.temperature_uc - first.temperature_uc) * 1e-6;
     if seconds > 0.0 { warmer_c / seconds } else { 0.0 }
@@ -84,7 +85,9 @@ fn smooth(values: &[Vec<f64>]) -> Option<Columns> {
         (below + within) as f64 / sorted.len() as f64 - 1.0
     };
     let columns = |values: &Vec<f64>| {
-        let rows = values.iter().flat_map(|value| (1..=degree as i32).map(|power| rank(*value).powi(power)).collect::<Vec<_>>());
+        let rows = values
+            .iter()
+            .flat_map(|value| (1..=degree as i32).map(|power| rank(*value).powi(power)).collect::<Vec<_>>());
         DMatrix::from_row_iterator(values.len(), degree, rows)
     };
     Some(values.iter().map(columns).collect())
@@ -114,7 +117,8 @@ fn chance(value: f64, freedom: f64) -> f64 {
 /// Probability that a normal variable exceeds `z`, to 1e-7 (Abramowitz & Stegun 26.2.17).
 fn upper_tail(z: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.231_641_9 * z.abs());
-    let series = t * (0.319_381_530 + t * (-0.356_563_782 + t * (1.781_477_937 + t * (-1.821_255_978 + t * 1.330_274_429))));
+    let series =
+        t * (0.319_381_530 + t * (-0.356_563_782 + t * (1.781_477_937 + t * (-1.821_255_978 + t * 1.330_274_429))));
     let tail = (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt() * series;
     if z >= 0.0 { tail } else { 1.0 - tail }
 }
@@ -125,7 +129,9 @@ mod tests {
 
     #[test]
     fn chances_are_those_of_the_tables() {
-        for (value, freedom, table) in [(3.841, 1.0, 0.05), (18.307, 10.0, 0.05), (6.635, 1.0, 0.01), (23.209, 10.0, 0.01)] {
+        for (value, freedom, table) in
+            [(3.841, 1.0, 0.05), (18.307, 10.0, 0.05), (6.635, 1.0, 0.01), (23.209, 10.0, 0.01)]
+        {
             let found = chance(value, freedom);
             assert!((found / table - 1.0).abs() < 0.06, "{value} at {freedom}: {found}");
         }

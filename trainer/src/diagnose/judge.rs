@@ -26,7 +26,7 @@ const ENOUGH: f64 = 25.0;
 const MOST_FINDINGS: usize = 4;
 /// Effects whose evidence differs by less are confounded; and by less than this share, as no formula is exact.
 const CONFOUNDED: f64 = 10.0;
-const CONFOUNDED_SHARE: f64 = 0.02;
+const CONFOUNDED_SHARE: f64 = 0.1;
 /// Wander within a run beyond so many times the sample noise is no noise of a resonator: something causes it.
 const STRUCTURE: f64 = 1.0;
 /// Evidence of an effect beyond its physical bounds that tells of something unknown: formulas are not exact.
@@ -38,11 +38,18 @@ const LAST_STEPS: usize = 12;
 
 pub(super) fn judge(model: &Model, campaign: &Campaign, progress: &dyn Progress) -> Result<Diagnosis, DiagnoseError> {
     let mut case = case(model, campaign)?;
-    let start = in_model(model, campaign)?;
+    let mut start = in_model(model, campaign)?;
     case.layout.remember(&start);
+    if !start.effects.is_empty() {
+        // What retraining would make of the effects that the model has is not missing.
+        let noises = case.noises(&case.left(&start), &case.adapting(&start), None);
+        let benches = case.benches(&case.left(&start), &case.stiff(&start), &noises).ok_or(DiagnoseError::NoNoise)?;
+        start = case.refit(None, &start, &benches, LAST_STEPS);
+        case.layout.remember(&start);
+    }
     let shown = with_channels(campaign);
     let candidates = Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), &shown);
-    let noises = case.noises(&case.left(&start), &case.stiff(&start), None);
+    let noises = case.noises(&case.left(&start), &case.adapting(&start), None);
     let screening = Screening::new(&case, &start, candidates, &noises).ok_or(DiagnoseError::NoNoise)?;
     let found = search(&mut case, &start, &screening.visible, noises, progress)?;
     let mut diagnosis = answer(&case, campaign, &start, found);
@@ -145,10 +152,9 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
     }
     let dependences = case.dependences(start, &found.known, &found.noises[1], &campaign.channels);
     let findings = findings(case, start, &found);
-    let residual_ug = findings.first().map_or_else(
-        || case.held_out(start, &found.noises[1]).residual_ug,
-        |finding| finding.residual_before_ug,
-    );
+    let residual_ug = findings
+        .first()
+        .map_or_else(|| case.held_out(start, &found.noises[1]).residual_ug, |finding| finding.residual_before_ug);
     let residual_after_ug = findings.last().map_or(residual_ug, |finding| finding.residual_after_ug);
     let verdict = match findings.first() {
         None if unexplained => Verdict::Unexplained,
@@ -172,8 +178,8 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
 
 /// Wander within a run, µg RMS over an hour.
 fn structure_ug(noise: &NoiseModel) -> f64 {
-    let [flicker, wander] = [noise.parts[FLICKER], noise.parts[WANDER]];
-    (2.0 * flicker.powi(2) + wander.powi(2)).sqrt()
+    let [flicker, wander, walk] = [FLICKER, WANDER, WALK].map(|part| noise.parts[part]);
+    (2.0 * flicker.powi(2) + wander.powi(2) + (walk * 60.0).powi(2)).sqrt()
 }
 
 fn findings(case: &Case, start: &Known, found: &Findings) -> Vec<Finding> {

@@ -1,7 +1,7 @@
 //! The campaign as a diagnosis sees it: cells of neighbouring samples, run by run, with what noise may depend on.
 
-use crate::campaign::{Campaign, Run};
 use super::instrument::Known;
+use crate::campaign::{Campaign, Run};
 use crate::fit::dataset::{InputScale, cells, mean};
 use firmware_core::{Memory, effect};
 use protocol::limits::MAX_PARAMETERS;
@@ -74,8 +74,12 @@ impl<'a> Layout<'a> {
             for (effect, values) in known.effects.iter().zip(&known.coefficients.values) {
                 let mut coefficients = [0.0; MAX_PARAMETERS];
                 coefficients.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value);
-                let idle = effect.expression.as_ref().is_some_and(|text| effect.about.parameters.iter().any(|about| text.leaves_idle(about)));
-                let memory = effect::find::<f64>(effect.about.id).filter(|_| !idle).map(|effect| effect.memory(&coefficients));
+                let idle = effect
+                    .expression
+                    .as_ref()
+                    .is_some_and(|text| effect.about.parameters.iter().any(|about| text.leaves_idle(about)));
+                let memory =
+                    effect::find::<f64>(effect.about.id).filter(|_| !idle).map(|effect| effect.memory(&coefficients));
                 brought_along(stretch, memory.unwrap_or(Memory::None));
             }
         }
@@ -89,7 +93,8 @@ impl<'a> Layout<'a> {
     /// From the lowest to the highest temperature, °C.
     pub fn range_c(&self) -> RangeInclusive<f64> {
         let zero_c = f64::from(self.scale.temperature_zero_uc) * 1e-6;
-        let (low, high) = self.cells().fold((f64::MAX, f64::MIN), |(low, high), cell| (low.min(cell.t), high.max(cell.t)));
+        let (low, high) =
+            self.cells().fold((f64::MAX, f64::MIN), |(low, high), cell| (low.min(cell.t), high.max(cell.t)));
         let at = |t: f64| zero_c + t * self.scale.temperature_half_span_c;
         at(low)..=at(high)
     }

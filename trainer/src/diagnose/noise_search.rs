@@ -18,7 +18,13 @@ const TURNS: usize = 2;
 
 /// The most likely noise of a residual, the instrument's freedom used to the full; from `start`, or from a first guess
 /// when nothing is known.
-pub(super) fn noise(layout: &Layout, residual: &Columns, freedom: &Columns, start: NoiseModel, coarse: bool) -> NoiseModel {
+pub(super) fn noise(
+    layout: &Layout,
+    residual: &Columns,
+    freedom: &Columns,
+    start: NoiseModel,
+    coarse: bool,
+) -> NoiseModel {
     let mut noise = start;
     for turn in 0..if coarse { TURNS } else { 1 } {
         let Some(bench) = Bench::new(layout, noise, residual, freedom) else { return noise };

@@ -40,7 +40,8 @@ impl Screening {
         let why = |about: &&'static About| {
             let own: Vec<_> = shares.iter().filter(|(id, ..)| *id == about.id).collect();
             let excited = own.iter().any(|(_, size, _)| *size > NOTHING_UG);
-            (!own.is_empty() && !seen.contains(&about.id) && !about.takes_program()).then(|| (about.name, reason(about, excited)))
+            (!own.is_empty() && !seen.contains(&about.id) && !about.takes_program())
+                .then(|| (about.name, reason(about, excited)))
         };
         Some(Self { visible, hidden: effect::ALL.iter().filter_map(why).collect() })
     }
@@ -48,7 +49,10 @@ impl Screening {
 
 fn reason(about: &About, excited: bool) -> String {
     match (excited, about.channel) {
-        (true, _) => "the static calibration takes it up: it does the same at the same frequency difference and temperature".to_owned(),
+        (true, _) => {
+            "the static calibration takes it up: it does the same at the same frequency difference and temperature"
+                .to_owned()
+        }
         (false, Some(channel)) => format!("{channel} does not vary; it takes {}", about.needs),
         (false, None) => format!("nothing in this campaign excites it; it takes {}", about.needs),
     }
@@ -56,17 +60,18 @@ fn reason(about: &About, excited: bool) -> String {
 
 /// What this campaign can't show.
 pub(super) fn unobservable(campaign: &Campaign, screening: &Screening) -> Vec<Unobservable> {
-    let missing_channel = |about: &&&About| {
-        about.channel.is_some_and(|name| !campaign.channels.iter().any(|channel| channel == name))
-    };
+    let missing_channel =
+        |about: &&&About| about.channel.is_some_and(|name| !campaign.channels.iter().any(|channel| channel == name));
     let no_channel = effect::ALL.iter().filter(missing_channel).map(|about| Unobservable {
         effect: about.name.to_owned(),
         why: format!("no {} column", about.channel.unwrap_or_default()),
     });
-    let known_only = effect::ALL.iter().filter(|about| !about.is_on_device() && !about.takes_program()).map(|about| Unobservable {
-        effect: about.name.to_owned(),
-        why: "it is new at every start and counts as noise from run to run".to_owned(),
-    });
-    let hidden = screening.hidden.iter().map(|(name, why)| Unobservable { effect: (*name).to_owned(), why: why.clone() });
+    let known_only =
+        effect::ALL.iter().filter(|about| !about.is_on_device() && !about.takes_program()).map(|about| Unobservable {
+            effect: about.name.to_owned(),
+            why: "it is new at every start and counts as noise from run to run".to_owned(),
+        });
+    let hidden =
+        screening.hidden.iter().map(|(name, why)| Unobservable { effect: (*name).to_owned(), why: why.clone() });
     no_channel.chain(hidden).chain(known_only).collect()
 }

@@ -14,7 +14,8 @@ const PEAK: f64 = 12.0;
 impl Case<'_> {
     /// The period of the whitened residual, s, if one frequency stands out. Phases may differ from run to run.
     pub fn period_s(&self, known: &Known, noises: &Noises) -> Option<f64> {
-        let bench = Bench::new(&self.layout, noises.delta.small(), &self.left(known).delta, &self.adapting(known).delta)?;
+        let bench =
+            Bench::new(&self.layout, noises.delta.small(), &self.left(known).delta, &self.adapting(known).delta)?;
         let innovations = bench.innovations();
         let runs: Vec<(Vec<f64>, &Vec<f64>)> = self
             .layout

@@ -33,14 +33,25 @@ impl Contender {
     /// then it is something else.
     pub fn is_strained(&self, range_c: &RangeInclusive<f64>) -> bool {
         let about = self.effect.about;
-        let good = |name: &str| GOOD_LIMITS.contains(&(about.name, name));
+        let bad = |name: &str, side: Side| !GOOD_LIMITS.contains(&(about.name, name, side));
         about.parameters.iter().zip(&self.values).any(|(parameter, value)| match parameter.role {
             Role::Shape => {
-                !good(parameter.name) && (*value < parameter.low * AT_BOUND || *value * AT_BOUND > parameter.high)
+                (*value < parameter.low * AT_BOUND && bad(parameter.name, Side::Low))
+                    || (*value * AT_BOUND > parameter.high && bad(parameter.name, Side::High))
             }
-            Role::Location => parameter.unit == "°C" && !range_c.contains(value),
+            Role::Location if parameter.unit == "°C" => {
+                let reach_c = self.reach_c_per_g();
+                *value + reach_c < *range_c.start() || *value - reach_c > *range_c.end()
+            }
+            Role::Location => false,
             Role::Amplitude | Role::Origin => false,
         })
+    }
+
+    /// How far 1 g moves the place where the effect sits, °C.
+    fn reach_c_per_g(&self) -> f64 {
+        let pairs = self.effect.about.parameters.iter().zip(&self.values);
+        pairs.filter(|(parameter, _)| parameter.unit == "°C/g").map(|(_, value)| value.abs()).sum()
     }
 
     /// The effect by itself.
@@ -74,8 +85,14 @@ const FORETOLD: f64 = 0.25;
 /// A shape this close to its bound, as a ratio, was stopped by it.
 const AT_BOUND: f64 = 1.05;
 /// Effects whose formula has a limit at a bound that makes sense: a rate not smoothed, a drift that does not end.
-const GOOD_LIMITS: [(&str, &str); 3] =
-    [("thermal-gradient", "tau_s"), ("aging", "tau_days"), ("aging", "order")];
+const GOOD_LIMITS: [(&str, &str, Side); 3] =
+    [("thermal-gradient", "tau_s", Side::Low), ("aging", "tau_days", Side::High), ("aging", "order", Side::High)];
+
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Low,
+    High,
+}
 
 /// Everything that stays the same while contenders are compared.
 struct Scene {
@@ -106,7 +123,8 @@ impl Case<'_> {
             .filter_map(|contender| self.contend(&scene, contender))
             .collect();
         order.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-        let (strained, mut order): (Vec<_>, Vec<_>) = order.into_iter().partition(|contender: &Contender| contender.is_strained(&self.layout.range_c()));
+        let (strained, mut order): (Vec<_>, Vec<_>) =
+            order.into_iter().partition(|contender: &Contender| contender.is_strained(&self.layout.range_c()));
         let strained = strained.first().filter(|contender| self.foretells(known, contender).unwrap_or(false));
         let strained = strained.map_or(f64::NEG_INFINITY, |contender| contender.evidence);
         // An effect must foretell runs that its parameters were not fitted to.
@@ -203,9 +221,10 @@ impl Case<'_> {
             bench.scores(&joined(&columns), &widths)
         };
         let delta = scores(candidates.iter().map(|candidate| &candidate.columns).collect(), &benches.delta);
-        let sum = benches.sum.as_ref().map(|bench| {
-            scores(candidates.iter().filter_map(|candidate| candidate.sum.as_ref()).collect(), bench)
-        });
+        let sum = benches
+            .sum
+            .as_ref()
+            .map(|bench| scores(candidates.iter().filter_map(|candidate| candidate.sum.as_ref()).collect(), bench));
         let mut best: Vec<Contender> = Vec::new();
         for (index, candidate) in candidates.iter().enumerate() {
             if known.effects.iter().any(|effect| name_of(effect) == name_of(&candidate.effect)) {

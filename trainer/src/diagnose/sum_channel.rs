@@ -62,8 +62,7 @@ const GENEROUS: f64 = 1e3;
 impl SumChannel {
     /// The sum channel, if every row has it.
     pub fn new(layout: &Layout) -> Option<Self> {
-        let measured: Vec<Vec<f64>> =
-            layout.stretches.iter().map(|stretch| sums(stretch)).collect::<Option<_>>()?;
+        let measured: Vec<Vec<f64>> = layout.stretches.iter().map(|stretch| sums(stretch)).collect::<Option<_>>()?;
         let columns = |cell: &Cell| polynomials(cell.x, cell.t);
         let rows: Vec<Vec<f64>> = layout.cells().map(columns).collect();
         let width = rows.first()?.len();
@@ -74,13 +73,16 @@ impl SumChannel {
         let scatter = (misfit.norm_squared() / misfit.len() as f64).sqrt().max(1e-6);
         let smooth = |x: f64, t: f64| DVector::from_vec(polynomials(x, t)).dot(&fit);
         let mut misfits = misfit.iter().copied();
-        let mut channel = Self { residual: Vec::new(), freedom: Vec::new(), cells: Vec::new(), sample: 0.0, per_c: 0.0 };
+        let mut channel =
+            Self { residual: Vec::new(), freedom: Vec::new(), cells: Vec::new(), sample: 0.0, per_c: 0.0 };
         for (stretch, measured) in layout.stretches.iter().zip(&measured) {
             let half_c = layout.scale.temperature_half_span_c;
-            let slope = |cell: &Cell| (smooth(cell.x, cell.t + STEP) - smooth(cell.x, cell.t - STEP)) / (2.0 * STEP * half_c);
+            let slope =
+                |cell: &Cell| (smooth(cell.x, cell.t + STEP) - smooth(cell.x, cell.t - STEP)) / (2.0 * STEP * half_c);
             channel.cells.push(stretch.cells.iter().map(slope).zip(measured.iter().copied()).collect());
             channel.residual.push(DMatrix::from_iterator(measured.len(), 1, misfits.by_ref().take(measured.len())));
-            let freedom = stretch.cells.iter().flat_map(|cell| columns(cell).into_iter().map(|v| v * scatter * GENEROUS));
+            let freedom =
+                stretch.cells.iter().flat_map(|cell| columns(cell).into_iter().map(|v| v * scatter * GENEROUS));
             channel.freedom.push(DMatrix::from_row_iterator(measured.len(), width, freedom));
         }
         channel.sample = channel.sample_scatter(layout)?;

@@ -236,16 +236,20 @@ fn filtered<const LANES: usize>(steps: &[Step], count: usize, values: &DMatrix<f
 }
 
 /// Turns values into what the past did not foretell, and learns from it.
-fn innovate<const LANES: usize>(step: &Step, count: usize, states: &mut [[f64; LANES]; STATES], values: &mut [f64; LANES]) {
-    for state in 0..count {
-        for lane in 0..LANES {
-            states[state][lane] *= step.kept[state];
-            values[lane] -= step.seen[state] * states[state][lane];
+fn innovate<const LANES: usize>(
+    step: &Step,
+    count: usize,
+    states: &mut [[f64; LANES]; STATES],
+    values: &mut [f64; LANES],
+) {
+    let shares = step.kept.iter().zip(&step.seen);
+    for (state, (kept, seen)) in states.iter_mut().zip(shares).take(count) {
+        for (state, value) in state.iter_mut().zip(values.iter_mut()) {
+            *state *= kept;
+            *value -= seen * *state;
         }
     }
-    for state in 0..count {
-        for lane in 0..LANES {
-            states[state][lane] += step.gain[state] * values[lane];
-        }
+    for (state, gain) in states.iter_mut().zip(&step.gain).take(count) {
+        state.iter_mut().zip(values.iter()).for_each(|(state, value)| *state += gain * value);
     }
 }

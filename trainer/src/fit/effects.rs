@@ -140,12 +140,7 @@ impl Deed {
 }
 
 /// Runs the effects over a run, sample by sample; `None` if the core refuses the coefficients.
-pub(crate) fn deeds(
-    run: &Run,
-    effects: &[Chosen],
-    coefficients: &Coefficients,
-    max_gap_us: u32,
-) -> Option<Vec<Deed>> {
+pub(crate) fn deeds(run: &Run, effects: &[Chosen], coefficients: &Coefficients, max_gap_us: u32) -> Option<Vec<Deed>> {
     let mut terms = Terms::<f64>::new(max_gap_us);
     for (effect, values) in effects.iter().zip(&coefficients.values) {
         let program = effect.expression.as_ref().map_or(&[][..], |expression| expression.code());
