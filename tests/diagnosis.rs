@@ -92,7 +92,7 @@ fn a_model_that_has_the_effect_misses_it_no_more() {
     let settings = TrainSettings { restarts: 4, effects, ..TrainSettings::new(1) };
     let model = train(&campaign, &split, &settings, &Quiet).expect("a model").model;
     let diagnosis = diagnose(&model, &campaign, &Quiet).expect("a diagnosis");
-    assert_eq!(diagnosis.verdict, Verdict::NothingMissing, "{diagnosis:#?}");
+    assert_eq!(diagnosis.verdict, Verdict::NothingMissing, "{:?} {diagnosis:#?}", model.effects);
 }
 
 #[test]

@@ -33,7 +33,7 @@ pub use answer::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexplained, U
 use crate::campaign::Campaign;
 use crate::model::Model;
 use crate::progress::Progress;
-use crate::train::TrainError;
+use crate::train::{EffectChoice, TrainError};
 use thiserror::Error;
 
 /// Why there is no diagnosis.
@@ -58,4 +58,9 @@ pub enum DiagnoseError {
 /// [`DiagnoseError`] says what is missing.
 pub fn diagnose(model: &Model, campaign: &Campaign, progress: &dyn Progress) -> Result<Diagnosis, DiagnoseError> {
     judge::judge(model, campaign, progress)
+}
+
+/// Where a joint fit of these effects should begin, judged beside a static `model` of the same campaign.
+pub(crate) fn starts(model: &Model, campaign: &Campaign, choices: &[EffectChoice]) -> Option<Vec<EffectChoice>> {
+    judge::starts(model, campaign, choices)
 }

@@ -11,6 +11,7 @@ pub use baseline::Baseline;
 pub use settings::{Anchoring, EffectChoice, Method, TrainSettings};
 
 use crate::campaign::{Campaign, Run, Split};
+use crate::diagnose;
 use crate::expression::ExpressionError;
 use crate::fit::effects::Coefficients;
 use crate::fit::firefly::FireflyError;
@@ -151,6 +152,14 @@ pub fn train(
     settings: &TrainSettings,
     progress: &dyn Progress,
 ) -> Result<Trained, TrainError> {
+    let started;
+    let settings = if settings.effects.iter().any(|choice| choice.start.is_none()) {
+        Task::new(campaign, split, settings, progress)?;
+        started = started_well(campaign, split, settings, progress)?;
+        &started
+    } else {
+        settings
+    };
     let task = Task::new(campaign, split, settings, progress)?;
     if !settings.effects.is_empty() && settings.method != Method::SecondOrder {
         return Err(TrainError::EffectsNeedSecondOrder);
@@ -168,6 +177,29 @@ pub fn train(
     let raw = Baseline { polynomial: Polynomial::fit_degrees(&task.data, 1, 0), scale: task.scale };
     let baseline = Baseline { polynomial: task.polynomial, scale: task.scale };
     Ok(Trained { model, restarts, baseline, raw })
+}
+
+/// Restarts of the static model beside which effects find their start.
+const STATIC_RESTARTS: usize = 4;
+
+/// The settings with a start for every effect. A joint fit weighs states and runs by how they scatter, and the scatter of
+/// a static fit has the effect in it; a diagnosis, which fits effect and noise in turn, is not misled by that.
+fn started_well(
+    campaign: &Campaign,
+    split: &Split,
+    settings: &TrainSettings,
+    progress: &dyn Progress,
+) -> Result<TrainSettings, TrainError> {
+    if settings.method != Method::SecondOrder {
+        return Err(TrainError::EffectsNeedSecondOrder);
+    }
+    let restarts = settings.restarts.min(STATIC_RESTARTS);
+    let alone = TrainSettings { effects: Vec::new(), restarts, ..settings.clone() };
+    let model = train(campaign, split, &alone, progress)?.model;
+    let training = split.training.iter().filter_map(|&index| campaign.runs.get(index)).cloned().collect();
+    let training = Campaign::new(training, campaign.channels.clone(), campaign.quantity.clone());
+    let effects = diagnose::starts(&model, &training, &settings.effects);
+    Ok(TrainSettings { effects: effects.unwrap_or_else(|| settings.effects.clone()), ..settings.clone() })
 }
 
 /// RMS on the training runs of what the device computes, not of what the optimiser believed.

@@ -17,6 +17,7 @@ use crate::campaign::Campaign;
 use crate::fit::dataset::InputScale;
 use crate::model::Model;
 use crate::progress::Progress;
+use crate::train::{EffectChoice, choose};
 use firmware_core::effect::Role;
 use std::collections::BTreeMap;
 
@@ -57,6 +58,30 @@ pub(super) fn judge(model: &Model, campaign: &Campaign, progress: &dyn Progress)
     Ok(diagnosis)
 }
 
+/// Where a joint fit of these effects should begin: as a diagnosis of the static `model` would fit them, one beside
+/// the other. Effects that say nothing keep the start that they have.
+pub(super) fn starts(model: &Model, campaign: &Campaign, choices: &[EffectChoice]) -> Option<Vec<EffectChoice>> {
+    let case = case(model, campaign).ok()?;
+    let runs: Vec<_> = campaign.runs.iter().collect();
+    let mut known = Known::NONE;
+    let mut noises = case.noises(&case.left(&known), &case.stiff(&known), None);
+    let mut started = Vec::new();
+    for choice in choices {
+        let chosen = choose(choice, campaign, &runs).ok()?;
+        let start = choice.start.clone().or_else(|| {
+            let candidates = Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), &[chosen.clone()]);
+            let found = case.missing(&known, &candidates, &noises)?;
+            noises = found.winner.noises.unwrap_or(noises);
+            Some(found.winner.values)
+        });
+        if let Some(values) = &start {
+            known = known.with(&chosen, values);
+        }
+        started.push(EffectChoice { start, ..choice.clone() });
+    }
+    Some(started)
+}
+
 fn case<'a>(model: &Model, campaign: &'a Campaign) -> Result<Case<'a>, DiagnoseError> {
     let scale = InputScale {
         delta_f_zero_uhz: model.scaling.delta_f_zero_uhz,
@@ -76,9 +101,9 @@ fn case<'a>(model: &Model, campaign: &'a Campaign) -> Result<Case<'a>, DiagnoseE
 /// The effects that the model has already.
 fn in_model(model: &Model, campaign: &Campaign) -> Result<Known, DiagnoseError> {
     let mut known = Known::NONE;
-    for (choice, effect) in crate::train::EffectChoice::of(model).iter().zip(&model.effects) {
+    for (choice, effect) in EffectChoice::of(model).iter().zip(&model.effects) {
         let runs: Vec<_> = campaign.runs.iter().collect();
-        let chosen = crate::train::choose(choice, campaign, &runs)?;
+        let chosen = choose(choice, campaign, &runs)?;
         let value = |name: &str, start: f64| effect.parameters.get(name).copied().unwrap_or(start);
         let values: Vec<f64> = chosen.about.parameters.iter().map(|about| value(about.name, about.start)).collect();
         known = known.with(&chosen, &values);
