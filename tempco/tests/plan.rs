@@ -130,6 +130,7 @@ fn effects_that_are_asked_for_are_planned_for_and_what_can_not_be_says_what_to_d
     run(folder, &["train", "old.csv", "-o", "model.toml", "--restarts", "3"]);
     let text = run(folder, &["plan", "model.toml", "old.csv", "--effects", "supply-voltage"]);
     assert!(text.starts_with("Is there supply-voltage, or not?") && text.contains("supply-sweep"), "{text}");
+    assert!(text.contains("Write supply_v into the old files too"), "{text}");
     let text = run(folder, &["plan", "model.toml", "old.csv"]);
     assert!(text.contains("This campaign could not show") && text.contains("vibration-sweep"), "{text}");
     for (arguments, place) in [(["--effects", "thermal-leg"], "thermal-leg"), (["--hours", "0.5"], "--hours 2")] {

@@ -60,7 +60,11 @@ impl Plan {
             anstream::println!("{:#}", json(&planned, file.as_deref()));
         } else {
             anstream::println!("{}", render::plan::text(&planned));
-            anstream::println!("{}", self.next(best, file.as_deref()));
+            anstream::println!(
+                "{}{}",
+                self.next(best, file.as_deref()),
+                best.map_or_else(String::new, |best| lacking(best, &campaign))
+            );
         }
         Ok(if best.is_some() { Answer::Yes } else { Answer::No })
     }
@@ -107,6 +111,20 @@ impl Plan {
 fn best<'a>(plan: &Planned, proposed: &'a [Proposed]) -> Option<&'a Proposed> {
     let best = plan.proposals.first().filter(|best| best.is_useful())?;
     proposed.iter().find(|one| one.recording.name == best.recording)
+}
+
+/// Columns that the recording has and the campaign hasn't: both can be read together only when both have them.
+fn lacking(best: &Proposed, campaign: &Campaign) -> String {
+    let planned = &best.recording.campaign.channels;
+    let names: Vec<&str> =
+        planned.iter().filter(|name| !campaign.channels.contains(name)).map(String::as_str).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\nWrite {} into the old files too, as it was then: files with different channels can't be read together.",
+        names.join(", ")
+    )
 }
 
 /// The column that an effect follows besides time and temperature.
