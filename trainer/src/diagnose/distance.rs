@@ -14,7 +14,7 @@ pub(super) struct Foretold {
     course: Pair,
     /// What it could add instead, one way after the other; within a way every column has an amplitude of its own.
     ways: Vec<Pair>,
-    /// What it may do to the sum of the frequencies without saying how much; scaled by an amplitude of its own.
+    /// The most that it is expected to do to the sum of the frequencies; how much, it doesn't say.
     unsaid: Option<Pair>,
 }
 
@@ -44,10 +44,14 @@ impl Foretold {
         let far = Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), std::slice::from_ref(effect));
         let far = if far.len() > MOST_SHAPES { Vec::new() } else { far };
         let far = far.into_iter().map(|candidate| Pair { delta: candidate.columns, sum: candidate.sum });
-        let unsaid = (response(effect.about) != Response::Told && course.sum.is_some()).then(|| Pair {
-            delta: course.delta.iter().map(|run| run * 0.0).collect(),
-            sum: Some(course.delta.clone()),
-        });
+        let unsaid = match response(effect.about) {
+            Response::Free(most) if course.sum.is_some() => {
+                let mhz_per_ug = case.instrument.scale_factor_hz_per_g(&case.layout) * 1e-3;
+                let scaled = |factor: f64| course.delta.iter().map(|run| run * factor).collect();
+                Some(Pair { delta: scaled(0.0), sum: Some(scaled(most * mhz_per_ug)) })
+            }
+            _ => None,
+        };
         Self { ways: std::iter::once(near).chain(far).collect(), course, unsaid }
     }
 }
@@ -106,28 +110,30 @@ impl Products {
     }
 
     fn beyond_nothing(&self, one: usize) -> f64 {
-        self.places[one].as_ref().map_or(0.0, |one| self.beyond(one.course, &one.unsaid))
+        self.places[one].as_ref().map_or(0.0, |one| self.beyond(one.course, &[], &one.unsaid))
     }
 
     fn beyond_other(&self, one: usize, other: usize) -> f64 {
         let (Some(one), Some(other)) = (&self.places[one], &self.places[other]) else { return 0.0 };
         let beyond = |way: &Vec<usize>| {
-            let absorbing: Vec<usize> = way.iter().chain(&one.unsaid).chain(&other.unsaid).copied().collect();
-            self.beyond(one.course, &absorbing)
+            let unsaid: Vec<usize> = one.unsaid.iter().chain(&other.unsaid).copied().collect();
+            self.beyond(one.course, way, &unsaid)
         };
         other.ways.iter().map(beyond).fold(f64::INFINITY, f64::min)
     }
 
-    /// What is left of a column when others with free amplitudes have taken what they can.
-    fn beyond(&self, column: usize, absorbing: &[usize]) -> f64 {
+    /// What is left of a column when others have taken what they can: `free` with any amplitude, `expected` with
+    /// amplitudes of about 1 at most.
+    fn beyond(&self, column: usize, free: &[usize], expected: &[usize]) -> f64 {
         let own = self.normal[(column, column)];
         // In units of their own size the columns can be told from rounding.
         let size = |i: usize| self.normal[(i, i)].max(0.0).sqrt();
-        let present: Vec<usize> = absorbing.iter().copied().filter(|&i| size(i) > 0.0).collect();
+        let present: Vec<usize> = free.iter().chain(expected).copied().filter(|&i| size(i) > 0.0).collect();
         if present.is_empty() || own <= 0.0 {
             return own.max(0.0);
         }
-        let ridge = |i: usize, j: usize| if i == j { ROUNDING } else { 0.0 };
+        let price = |i: usize| if expected.contains(&i) { 1.0 / self.normal[(i, i)] } else { 0.0 };
+        let ridge = |i: usize, j: usize| if i == j { ROUNDING + price(present[i]) } else { 0.0 };
         let inner = DMatrix::from_fn(present.len(), present.len(), |i, j| {
             self.normal[(present[i], present[j])] / (size(present[i]) * size(present[j])) + ridge(i, j)
         });
