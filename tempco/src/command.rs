@@ -8,6 +8,7 @@ mod diagnose;
 mod effects;
 mod export;
 mod inspect;
+mod plan;
 mod remove;
 mod reproduce;
 mod reveal;
@@ -27,6 +28,7 @@ pub enum Command {
     Train(train::Train),
     Compare(compare::Compare),
     Diagnose(diagnose::Diagnose),
+    Plan(plan::Plan),
     Effects(effects::Effects),
     Add(add::Add),
     Remove(remove::Remove),
@@ -45,6 +47,7 @@ impl Command {
             Self::Train(command) => command.run(),
             Self::Compare(command) => command.run(),
             Self::Diagnose(command) => command.run(),
+            Self::Plan(command) => command.run(),
             Self::Effects(command) => command.run(),
             Self::Add(command) => command.run(),
             Self::Remove(command) => command.run(),

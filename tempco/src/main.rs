@@ -8,6 +8,7 @@ mod data;
 mod failure;
 mod plot;
 mod progress;
+mod recordings;
 mod render;
 mod subject;
 mod table;

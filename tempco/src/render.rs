@@ -1,6 +1,7 @@
 //! Results as text for people.
 
 pub mod diagnosis;
+pub mod plan;
 
 use crate::table::Table;
 use std::fmt::Write;

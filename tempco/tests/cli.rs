@@ -192,8 +192,10 @@ fn every_failure_names_its_place_and_a_way_out() {
 #[test]
 fn help_of_every_verb_has_an_example() {
     let folder = TempDir::new().expect("a folder");
-    let verbs =
-        ["demo", "simulate", "train", "compare", "diagnose", "effects", "add", "remove", "export", "inspect", "verify"];
+    let verbs = [
+        "demo", "simulate", "train", "compare", "diagnose", "plan", "effects", "add", "remove", "export", "inspect",
+        "verify",
+    ];
     for verb in verbs {
         let text = stdout(tempco(folder.path()).args([verb, "--help"]));
         assert!(text.contains(&format!("Example:  tempco {verb}")), "{verb}: {text}");

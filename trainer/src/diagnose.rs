@@ -7,6 +7,7 @@
 //!      └──────────── evidence: the score test ─────────────┘
 //!                        case: one campaign and one model, together
 //!          observable ─▶ search ─▶ judge ─▶ answer     held_out, dependence, period, separation
+//!                            plan: hypothesis, planned, distance
 //! ```
 //!
 //! `docs/diagnosis.md` tells how it works.
@@ -15,14 +16,18 @@ mod answer;
 mod candidate;
 mod case;
 mod dependence;
+mod distance;
 mod evidence;
 mod held_out;
+mod hypothesis;
 mod instrument;
 mod judge;
 mod layout;
 mod noise_search;
 mod observable;
 mod period;
+pub mod plan;
+mod planned;
 mod search;
 mod separation;
 mod sum_channel;

@@ -61,6 +61,14 @@ impl Known {
         let told = self.each().filter(|one| response(one.effects[0].about) == Response::Told);
         told.fold(Self::NONE, |all, one| all.with(&one.effects[0], &one.coefficients.values[0]))
     }
+
+    /// These but the one at `index`.
+    pub fn without(&self, index: usize) -> Self {
+        let mut known = self.clone();
+        known.effects.remove(index);
+        known.coefficients.values.remove(index);
+        known
+    }
 }
 
 /// Mean deeds of the cells, run by run.

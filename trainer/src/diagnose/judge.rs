@@ -82,14 +82,9 @@ pub(super) fn starts(model: &Model, campaign: &Campaign, choices: &[EffectChoice
     Some(started)
 }
 
-fn case<'a>(model: &Model, campaign: &'a Campaign) -> Result<Case<'a>, DiagnoseError> {
-    let scale = InputScale {
-        delta_f_zero_uhz: model.scaling.delta_f_zero_uhz,
-        delta_f_half_span_hz: f64::from(model.scaling.delta_f_gain_per_hz).recip(),
-        temperature_zero_uc: model.scaling.temperature_zero_uc,
-        temperature_half_span_c: f64::from(model.scaling.temperature_gain_per_c).recip(),
-    };
-    let layout = Layout::new(campaign, scale, model.domain.max_gap_us);
+/// Model and measurements before the judge.
+pub(super) fn case<'a>(model: &Model, campaign: &'a Campaign) -> Result<Case<'a>, DiagnoseError> {
+    let layout = Layout::new(campaign, scale(model), model.domain.max_gap_us);
     let instrument = Instrument::new(model);
     let sample_ug = instrument.sample_ug(&layout).ok_or(DiagnoseError::NoNoise)?;
     let ug_per_c = instrument.ug_per_c(&layout);
@@ -98,8 +93,18 @@ fn case<'a>(model: &Model, campaign: &'a Campaign) -> Result<Case<'a>, DiagnoseE
     Ok(Case { layout, instrument, freedom, sum, sample_ug, ug_per_c })
 }
 
+/// From integers to the model's inputs.
+pub(super) fn scale(model: &Model) -> InputScale {
+    InputScale {
+        delta_f_zero_uhz: model.scaling.delta_f_zero_uhz,
+        delta_f_half_span_hz: f64::from(model.scaling.delta_f_gain_per_hz).recip(),
+        temperature_zero_uc: model.scaling.temperature_zero_uc,
+        temperature_half_span_c: f64::from(model.scaling.temperature_gain_per_c).recip(),
+    }
+}
+
 /// The effects that the model has already.
-fn in_model(model: &Model, campaign: &Campaign) -> Result<Known, DiagnoseError> {
+pub(super) fn in_model(model: &Model, campaign: &Campaign) -> Result<Known, DiagnoseError> {
     let mut known = Known::NONE;
     for (choice, effect) in EffectChoice::of(model).iter().zip(&model.effects) {
         let runs: Vec<_> = campaign.runs.iter().collect();

@@ -215,7 +215,7 @@ impl Case<'_> {
     }
 
     /// The best shape of every effect on the grid.
-    fn screen(&self, benches: &Benches, known: &Known, candidates: &[Candidate]) -> Vec<Contender> {
+    pub fn screen(&self, benches: &Benches, known: &Known, candidates: &[Candidate]) -> Vec<Contender> {
         let scores = |columns: Vec<&Columns>, bench: &super::evidence::Bench| {
             let widths: Vec<usize> = columns.iter().map(|columns| width(columns)).collect();
             bench.scores(&joined(&columns), &widths)

@@ -1,0 +1,165 @@
+//! `tempco plan MODEL DATA`
+
+use super::diagnose::diagnosed;
+use crate::data::Data;
+use crate::failure::{Answer, Failure};
+use crate::progress::spinner;
+use crate::recordings::{self, Proposed};
+use crate::render;
+use clap::Args;
+use firmware_core::effect::about;
+use std::path::{Path, PathBuf};
+use trainer::campaign::Campaign;
+use trainer::diagnose::Diagnosis;
+use trainer::diagnose::plan::{Plan as Planned, PlanError, Recording, plan};
+use trainer::model::Model;
+use trainer::progress::Quiet;
+
+/// Proposes the next recording: the one that tells best apart what the diagnosis leaves open.
+#[derive(Args)]
+#[command(
+    after_help = "Example:  tempco plan model.toml campaign.csv -o next\n          tempco plan model.toml campaign.csv --effects thermal-lag,thermal-gradient --hours 24"
+)]
+pub struct Plan {
+    /// Model file
+    model: PathBuf,
+
+    #[command(flatten)]
+    data: Data,
+
+    /// Effects to tell apart, instead of those that the diagnosis leaves open; a single one is told from none
+    #[arg(long, value_name = "EFFECT,…", value_delimiter = ',')]
+    effects: Vec<String>,
+
+    /// Only recordings that keep chamber and turntable busy for at most so long
+    #[arg(long, value_name = "H")]
+    hours: Option<f64>,
+
+    /// Folder for the best recording's scenario file
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+
+    /// Prints one JSON object instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+impl Plan {
+    pub fn run(&self) -> Result<Answer, Failure> {
+        let (model, campaign) = (Model::read(&self.model)?, self.data.read()?);
+        let diagnosis = diagnosed(&model, &campaign)?;
+        let proposed = self.recordings(&campaign, &diagnosis)?;
+        let recordings: Vec<Recording> = proposed.iter().map(|one| one.recording.clone()).collect();
+        let spinner = spinner("planning");
+        let planned = plan(&model, &campaign, &diagnosis, &self.effects, &recordings, &Quiet);
+        spinner.finish_and_clear();
+        let planned = planned.map_err(explained)?;
+        let best = best(&planned, &proposed);
+        let file = best.zip(self.output.as_ref()).map(|(best, folder)| write(best, folder)).transpose()?;
+        if self.json {
+            anstream::println!("{:#}", json(&planned, file.as_deref()));
+        } else {
+            anstream::println!("{}", render::plan::text(&planned));
+            anstream::println!(
+                "{}{}",
+                self.next(best, file.as_deref()),
+                best.map_or_else(String::new, |best| lacking(best, &campaign))
+            );
+        }
+        Ok(if best.is_some() { Answer::Yes } else { Answer::No })
+    }
+
+    /// The recordings that there is time for.
+    fn recordings(&self, campaign: &Campaign, diagnosis: &Diagnosis) -> Result<Vec<Proposed>, Failure> {
+        let unseen = diagnosis.unobservable.iter().map(|one| &one.effect);
+        let columns: Vec<&str> = self.effects.iter().chain(unseen).filter_map(|name| column(name)).collect();
+        let mut all = recordings::all(campaign, &columns)?;
+        let shortest_h = all.iter().map(|one| one.recording.hours).fold(f64::INFINITY, f64::min);
+        all.retain(|one| self.hours.is_none_or(|hours| one.recording.hours <= hours));
+        if all.is_empty() {
+            return Err(Failure::new("no recording is as short as that")
+                .help(format_args!("the shortest takes {shortest_h:.1} hours: --hours {:.0}", shortest_h.ceil())));
+        }
+        Ok(all)
+    }
+
+    /// What a person does next.
+    fn next(&self, best: Option<&Proposed>, file: Option<&Path>) -> String {
+        let (model, data) = (self.model.display(), self.data.command_line());
+        let Some(best) = best else {
+            return "No recording here tells them apart any better. Record another quantity: f1 and f2 beside their \
+                    difference, or the channel that the effect follows (`tempco effects NAME` says what it needs)."
+                .to_owned();
+        };
+        let Some(file) = file else {
+            return format!(
+                "Next:  tempco plan {model} {data} -o next      # writes {} as a scenario",
+                best.scenario.name
+            );
+        };
+        format!(
+            "{} is written to {}.\nRehearse it:  tempco simulate {} -o new.csv\nOnce it is recorded:  tempco train {data} \
+             new.csv -o model2.toml && tempco diagnose model2.toml {data} new.csv",
+            best.scenario.name,
+            file.display(),
+            file.display()
+        )
+    }
+}
+
+/// The best recording, if it is any good.
+fn best<'a>(plan: &Planned, proposed: &'a [Proposed]) -> Option<&'a Proposed> {
+    let best = plan.proposals.first().filter(|best| best.is_useful())?;
+    proposed.iter().find(|one| one.recording.name == best.recording)
+}
+
+/// Columns that the recording has and the campaign hasn't: both can be read together only when both have them.
+fn lacking(best: &Proposed, campaign: &Campaign) -> String {
+    let planned = &best.recording.campaign.channels;
+    let names: Vec<&str> =
+        planned.iter().filter(|name| !campaign.channels.contains(name)).map(String::as_str).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\nWrite {} into the old files too, as it was then: files with different channels can't be read together.",
+        names.join(", ")
+    )
+}
+
+/// The column that an effect follows besides time and temperature.
+fn column(effect: &str) -> Option<&'static str> {
+    let about = about(effect)?;
+    about.channel.or_else(|| about.needs.contains("age_days").then_some("age_days"))
+}
+
+fn write(best: &Proposed, folder: &Path) -> Result<PathBuf, Failure> {
+    let file = folder.join(format!("{}.toml", best.scenario.name));
+    std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, &error))?;
+    let text = format!(
+        "# {:.1} hours of chamber and turntable. No sensor is described here: a rehearsal with `tempco simulate` takes a\n# nominal one, with the [device], [noise] and [effects] that you add.\n\n{}",
+        best.recording.hours,
+        recordings::text(&best.scenario)
+    );
+    std::fs::write(&file, text).map_err(|error| Failure::io(&file, &error))?;
+    Ok(file)
+}
+
+fn json(plan: &Planned, file: Option<&Path>) -> serde_json::Value {
+    let mut object = serde_json::json!(plan);
+    object["file"] = serde_json::json!(file);
+    object
+}
+
+fn explained(error: PlanError) -> Failure {
+    let help = match &error {
+        PlanError::NothingOpen => Some("--effects a,b names two effects to tell apart all the same"),
+        PlanError::UnknownEffect(_) => Some("write names as in --effects thermal-lag,thermal-gradient"),
+        PlanError::NoAccelerometer(_) | PlanError::Diagnose(_) => None,
+    };
+    let failure = Failure::new(error);
+    match help {
+        Some(help) => failure.help(help),
+        None => failure,
+    }
+}
