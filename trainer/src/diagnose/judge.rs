@@ -69,7 +69,8 @@ pub(super) fn starts(model: &Model, campaign: &Campaign, choices: &[EffectChoice
     for choice in choices {
         let chosen = choose(choice, campaign, &runs).ok()?;
         let start = choice.start.clone().or_else(|| {
-            let candidates = Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), &[chosen.clone()]);
+            let candidates =
+                Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), std::slice::from_ref(&chosen));
             let found = case.missing(&known, &candidates, &noises)?;
             noises = found.winner.noises.unwrap_or(noises);
             Some(found.winner.values)
