@@ -9,11 +9,14 @@ use super::evidence::product;
 use super::instrument::Known;
 use super::whitening::Columns;
 use nalgebra::{Cholesky, DMatrix};
+use std::ops::Range;
 
 /// What is read wrong when each run is predicted from the others.
 pub(super) struct HeldOut {
     /// RMS over all samples, µg.
     pub residual_ug: f64,
+    /// The same about the mean of each part that was left out, µg: without what is new at every start.
+    pub about_mean_ug: f64,
     /// Sum of squares of the whitened residuals: −2 log likelihood but for a constant.
     pub deviance: f64,
 }
@@ -24,24 +27,46 @@ impl Case<'_> {
         let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
         let white_left = noises.delta.whiten(&self.layout, &left).columns;
         let white_freedom = noises.delta.whiten(&self.layout, &freedom).columns;
-        let of = |matrix: &Columns, run: usize| vec![matrix[run].clone()];
         let mut normal = product(&white_freedom, &white_freedom);
         (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1.0);
         let right = product(&white_freedom, &white_left);
-        let (mut squares, mut samples, mut deviance) = (0.0, 0.0, 0.0);
-        for (run, stretch) in self.layout.stretches.iter().enumerate() {
-            let own = of(&white_freedom, run);
+        let (mut squares, mut about_mean, mut samples, mut deviance) = (0.0, 0.0, 0.0, 0.0);
+        for (run, rows) in self.folds() {
+            let part = |matrix: &Columns| matrix[run].rows(rows.start, rows.len()).into_owned();
+            let own = vec![part(&white_freedom)];
             let others = &normal - product(&own, &own);
-            let rest = &right - product(&own, &of(&white_left, run));
+            let rest = &right - product(&own, &vec![part(&white_left)]);
             let Some(factor) = Cholesky::new(others) else { continue };
             let learnt = factor.solve(&rest);
-            let predicted: DMatrix<f64> = &left[run] - &freedom[run] * &learnt;
-            for (cell, residual) in stretch.cells.iter().zip(predicted.iter()) {
+            let predicted: DMatrix<f64> = part(&left) - part(&freedom) * &learnt;
+            let cells = &self.layout.stretches[run].cells[rows.clone()];
+            let (mut sum, mut own_samples) = (0.0, 0.0);
+            for (cell, residual) in cells.iter().zip(predicted.iter()) {
                 squares += cell.samples * residual.powi(2) + (cell.samples - 1.0) * self.sample_ug.powi(2);
-                samples += cell.samples;
+                sum += cell.samples * residual;
+                own_samples += cell.samples;
             }
-            deviance += (&white_left[run] - &white_freedom[run] * &learnt).norm_squared();
+            about_mean -= sum * sum / f64::max(own_samples, 1.0);
+            samples += own_samples;
+            deviance += (part(&white_left) - &own[0] * &learnt).norm_squared();
         }
-        HeldOut { residual_ug: if samples > 0.0 { (squares / samples).sqrt() } else { 0.0 }, deviance }
+        let rms = |squares: f64| if samples > 0.0 { (squares.max(0.0) / samples).sqrt() } else { 0.0 };
+        HeldOut { residual_ug: rms(squares), about_mean_ug: rms(squares + about_mean), deviance }
+    }
+
+    /// What is left out together: a run, or a stretch of a run where there are too few of them.
+    fn folds(&self) -> Vec<(usize, Range<usize>)> {
+        let runs = self.layout.stretches.len();
+        let parts = if runs < FEW_RUNS { PARTS_OF_FEW.div_ceil(runs.max(1)) } else { 1 };
+        let of = |(run, stretch): (usize, &super::layout::Stretch)| {
+            let cells = stretch.cells.len();
+            let bounds = move |part: usize| cells * part / parts;
+            (0..parts).map(move |part| (run, bounds(part)..bounds(part + 1))).collect::<Vec<_>>()
+        };
+        self.layout.stretches.iter().enumerate().flat_map(of).collect()
     }
 }
+
+/// With fewer runs, parts of them are left out; so many parts in all.
+const FEW_RUNS: usize = 3;
+const PARTS_OF_FEW: usize = 12;

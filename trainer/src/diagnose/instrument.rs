@@ -125,7 +125,12 @@ impl Instrument {
     /// How the reading can change by retraining, µg per expected change: polynomials and the network's tangents.
     pub fn freedom(&self, layout: &Layout) -> Columns {
         let departure_ug = f64::from(self.model.scaling.output_g).abs() * UG;
+        let still = layout.is_still();
         let column = |cell: &Cell| {
+            if still {
+                // The slope is stated, not learnt: retraining can change the course over temperature only.
+                return chebyshev(POWERS.1, cell.t).into_iter().map(|value| value * departure_ug).collect();
+            }
             let mut values = polynomials(cell.x, cell.t);
             values.iter_mut().for_each(|value| *value *= departure_ug);
             values.extend(self.tangents(cell).map(|value| value * departure_ug * FREEDOM));

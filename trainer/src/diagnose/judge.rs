@@ -32,8 +32,9 @@ const CONFOUNDED_SHARE: f64 = 0.1;
 const STRUCTURE: f64 = 1.0;
 /// Evidence of an effect beyond its physical bounds that tells of something unknown: formulas are not exact.
 const SURELY_STRAINED: f64 = 100.0;
-/// Findings must remove at least this share of the structure, or they are not its cause.
-const REMOVED: f64 = 0.5;
+/// Where structure remains, findings must lower the held-out residual about the runs' means by this share, or they are
+/// not its cause: what merely resembles it does not foretell other runs.
+const REMOVED: f64 = 0.05;
 /// Steps of the last fit of all findings together.
 const LAST_STEPS: usize = 12;
 
@@ -121,8 +122,8 @@ pub(super) fn in_model(model: &Model, campaign: &Campaign) -> Result<Known, Diag
 struct Findings {
     known: Known,
     steps: Vec<Found>,
-    /// The noise with nothing found, and with all.
-    noises: [Noises; 2],
+    /// The noise with all of them.
+    noises: Noises,
     /// Most evidence of what would have to leave its physical bounds, at the end.
     strained: f64,
     /// A channel's course that explains what no effect does.
@@ -136,24 +137,16 @@ fn search(
     noises: Noises,
     progress: &dyn Progress,
 ) -> Result<Findings, DiagnoseError> {
-    let mut found = Findings {
-        known: start.clone(),
-        steps: Vec::new(),
-        noises: [noises; 2],
-        strained: f64::NEG_INFINITY,
-        formula: None,
-    };
+    let mut found =
+        Findings { known: start.clone(), steps: Vec::new(), noises, strained: f64::NEG_INFINITY, formula: None };
     while found.steps.len() < MOST_FINDINGS {
         if progress.cancelled() {
             return Err(DiagnoseError::Cancelled);
         }
-        let Some(next) = case.missing(&found.known, candidates, &found.noises[1]) else { break };
-        if found.steps.is_empty() {
-            found.noises[0] = next.noises;
-        }
+        let Some(next) = case.missing(&found.known, candidates, &found.noises) else { break };
         if next.winner.evidence < ENOUGH {
             found.strained = next.strained;
-            found.noises[1] = next.noises;
+            found.noises = next.noises;
             break;
         }
         if next.winner.effect.expression.is_some() {
@@ -161,11 +154,11 @@ fn search(
             found.formula = Some(next.winner);
             break;
         }
-        let noises = next.winner.noises.unwrap_or(found.noises[1]);
+        let noises = next.winner.noises.unwrap_or(found.noises);
         let known = found.known.with(&next.winner.effect, &next.winner.values);
         let benches = case.benches(&case.left(&known), &case.stiff(&known), &noises).ok_or(DiagnoseError::NoNoise)?;
         found.known = case.refit(None, &known, &benches, LAST_STEPS);
-        found.noises[1] = noises;
+        found.noises = noises;
         case.layout.remember(&found.known);
         found.steps.push(next);
     }
@@ -173,19 +166,20 @@ fn search(
 }
 
 fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) -> Diagnosis {
-    let structure = found.noises.map(|noises| structure_ug(&noises.delta));
-    let structured = structure[1] > STRUCTURE * case.sample_ug;
-    let futile = structured && structure[1] > (1.0 - REMOVED) * structure[0];
+    let structure_ug = structure_ug(&found.noises.delta);
+    let structured = structure_ug > STRUCTURE * case.sample_ug;
+    let held_out_ug = |known: &Known| case.held_out(known, &found.noises).about_mean_ug;
+    let futile = structured && held_out_ug(&found.known) > (1.0 - REMOVED) * held_out_ug(start);
     let unexplained = structured || found.strained > SURELY_STRAINED || found.formula.is_some();
     if futile {
         found.known = start.clone();
         found.steps.clear();
     }
-    let dependences = case.dependences(start, &found.known, &found.noises[1], &campaign.channels);
+    let dependences = case.dependences(start, &found.known, &found.noises, &campaign.channels);
     let findings = findings(case, start, &found);
     let residual_ug = findings
         .first()
-        .map_or_else(|| case.held_out(start, &found.noises[1]).residual_ug, |finding| finding.residual_before_ug);
+        .map_or_else(|| case.held_out(start, &found.noises).residual_ug, |finding| finding.residual_before_ug);
     let residual_after_ug = findings.last().map_or(residual_ug, |finding| finding.residual_after_ug);
     let verdict = match findings.first() {
         None if unexplained => Verdict::Unexplained,
@@ -198,12 +192,12 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
         residual_ug,
         residual_after_ug,
         noise_floor_ug: case.sample_ug,
-        explainable: explainable(residual_ug, residual_after_ug, &found.noises[1].delta),
+        explainable: explainable(residual_ug, residual_after_ug, &found.noises.delta),
         findings,
         unobservable: Vec::new(),
-        unexplained: unexplained.then(|| case.unexplained(&found, structure[1], &dependences, campaign)),
+        unexplained: unexplained.then(|| case.unexplained(&found, structure_ug, &dependences, campaign)),
         dependences,
-        noise: noise(&found.noises[1].delta),
+        noise: noise(&found.noises.delta),
     }
 }
 
@@ -214,14 +208,14 @@ fn structure_ug(noise: &NoiseModel) -> f64 {
 }
 
 fn findings(case: &Case, start: &Known, found: &Findings) -> Vec<Finding> {
-    let sigmas = case.sigmas(&found.known, &found.noises[1]);
-    let mut residual_ug = case.held_out(start, &found.noises[1]).residual_ug;
+    let sigmas = case.sigmas(&found.known, &found.noises);
+    let mut residual_ug = case.held_out(start, &found.noises).residual_ug;
     let mut known = start.clone();
     let mut findings = Vec::new();
     for (index, step) in found.steps.iter().enumerate() {
         let at = start.effects.len() + index;
         known = known.with(&found.known.effects[at], &found.known.coefficients.values[at]);
-        let after_ug = case.held_out(&known, &found.noises[1]).residual_ug;
+        let after_ug = case.held_out(&known, &found.noises).residual_ug;
         let name = step.winner.effect.about.name;
         let confounded_with = confounded(step);
         findings.push(Finding {
@@ -312,7 +306,7 @@ impl Case<'_> {
             let formula = Some(name_of(&formula.effect).to_owned());
             return Unexplained { depends_on, period_s: None, formula, residual_ug: structure_ug };
         }
-        let period_s = self.period_s(&found.known, &found.noises[1]);
+        let period_s = self.period_s(&found.known, &found.noises);
         if period_s.is_some() || depends_on.is_empty() {
             first("time_s", &mut depends_on);
         }

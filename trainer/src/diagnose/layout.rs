@@ -90,6 +90,12 @@ impl<'a> Layout<'a> {
         self.stretches.iter().map(|stretch| stretch.cells.len()).sum()
     }
 
+    /// Whether the reference never varies.
+    pub fn is_still(&self) -> bool {
+        let levels = || self.cells().map(|cell| cell.level_g);
+        levels().fold(f64::MIN, f64::max) - levels().fold(f64::MAX, f64::min) < SAME_POSITION_G
+    }
+
     /// From the lowest to the highest temperature, °C.
     pub fn range_c(&self) -> RangeInclusive<f64> {
         let zero_c = f64::from(self.scale.temperature_zero_uc) * 1e-6;

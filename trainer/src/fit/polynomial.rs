@@ -20,7 +20,7 @@ pub struct Polynomial {
 const SAME_LEVEL: f64 = 0.05;
 /// Highest powers: the baseline of the field is Δf² · T³.
 const MOST_X: usize = 2;
-const MOST_T: usize = 3;
+pub(crate) const MOST_T: usize = 3;
 /// Directions whose information is below this fraction of the best one are not determined by the data.
 const LEAST_INFORMATION: f64 = 1e-12;
 
@@ -44,6 +44,23 @@ impl Polynomial {
     #[must_use]
     pub fn fit_degrees(data: &[Datum], degree_x: usize, degree_t: usize) -> Self {
         Self::solve(data, degree_x, degree_t, |datum| datum.weight, 0.0)
+    }
+
+    /// Of a sensor that lay still: the slope ∂a/∂x is stated, g, and only the course over temperature is fitted. Left to
+    /// itself a fit of a reference that never varies would choose the slope zero, which is never wrong there.
+    #[must_use]
+    pub fn fit_still(data: &[Datum], slope_g: f64, degree_t: usize) -> Self {
+        let rest: Vec<Datum> =
+            data.iter().map(|datum| Datum { reference_g: datum.reference_g - slope_g * datum.x, ..*datum }).collect();
+        let degree_t = degree_t.min(distinct(&mut data.iter().map(|datum| datum.t)).saturating_sub(1));
+        let course = Self::fit_degrees(&rest, 0, degree_t);
+        let powers = degree_t + 1;
+        let mut coefficients = DVector::zeros(2 * powers);
+        coefficients.rows_mut(0, powers).copy_from(&course.coefficients);
+        coefficients[powers] = slope_g;
+        let mut inverse = DMatrix::zeros(2 * powers, 2 * powers);
+        inverse.view_mut((0, 0), (powers, powers)).copy_from(&course.inverse);
+        Self { degree_x: 1, degree_t, coefficients, inverse }
     }
 
     fn degrees_for(data: &[Datum]) -> (usize, usize) {
@@ -174,6 +191,15 @@ mod tests {
         assert_eq!(fit.degrees(), (2, 3));
         assert!((fit.evaluate(0.37, -0.2) - row(0.37, -0.2).reference_g).abs() < 1e-12);
         assert!((fit.slope(0.5, 0.5) - (1.5 + 0.01 * 0.25 - 0.02)).abs() < 1e-11);
+    }
+
+    #[test]
+    fn a_sensor_that_lies_still_keeps_the_stated_slope() {
+        let still = |t: f64| Datum { reference_g: 0.0, ..row(0.1 * t - 0.02 * t * t, t) };
+        let rows: Vec<Datum> = (0..40).map(|k| still(f64::from(k) / 20.0 - 1.0)).collect();
+        let fit = Polynomial::fit_still(&rows, 2.0, MOST_T);
+        assert!((fit.slope(0.3, 0.4) - 2.0).abs() < 1e-12);
+        assert!(rows.iter().all(|row| fit.evaluate(row.x, row.t).abs() < 1e-12));
     }
 
     #[test]

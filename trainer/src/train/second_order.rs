@@ -5,7 +5,7 @@ use crate::fit::dataset::Datum;
 use crate::fit::effects::{Coefficients, Frame, MovedRows};
 use crate::fit::levenberg_marquardt::{Limits, Termination, minimise};
 use crate::fit::network::{Anchors, Fit, Group, NONLINEAR, NetworkProblem, Prior, Rows, SlopeRow, ValueRow};
-use crate::fit::polynomial::Polynomial;
+use crate::fit::polynomial::{MOST_T, Polynomial};
 use crate::fit::random::{between, stream};
 use crate::noise::{Components, Mean};
 use crate::progress::RestartNews;
@@ -197,7 +197,9 @@ struct Problem {
 impl Problem {
     /// The problem of `data`, whose effects were taken out as far as they are known.
     fn new(task: &Task, data: &[Datum], noise: &Components) -> Self {
-        let line = Polynomial::fit_degrees(data, 1, 1);
+        let stated_g = task.settings.scale_factor_hz_per_g.map(|stated| task.scale.delta_f_half_span_hz / stated);
+        let line = stated_g
+            .map_or_else(|| Polynomial::fit_degrees(data, 1, 1), |slope_g| Polynomial::fit_still(data, slope_g, 1));
         let departure = |datum: &Datum| Mean {
             run: datum.run,
             samples: datum.weight,
@@ -206,7 +208,10 @@ impl Problem {
         let unit_g = rms(&data.iter().map(departure).collect::<Vec<_>>()).max(noise.sample_g);
         let unit_variance = (noise.sample_g / unit_g).powi(2);
         let weight = |datum: &Datum| noise.weight(datum.run, datum.weight);
-        let smooth = Polynomial::fit_mixed(data, weight, noise.run_variance());
+        let smooth = stated_g.map_or_else(
+            || Polynomial::fit_mixed(data, weight, noise.run_variance()),
+            |slope_g| Polynomial::fit_still(data, slope_g, MOST_T),
+        );
         Self {
             anchors: anchors(task, &smooth, &line, unit_g),
             noise: noise.clone(),

@@ -7,7 +7,7 @@ use crate::campaign::{Campaign, Run, Split};
 use crate::expression::Expression;
 use crate::fit::dataset::{Datum, InputScale, merged};
 use crate::fit::effects::Chosen;
-use crate::fit::polynomial::Polynomial;
+use crate::fit::polynomial::{MOST_T, Polynomial};
 use crate::model::{Model, ModelDomain, ModelEffect, ModelNetwork, ModelScaling, Provenance, Units};
 use crate::noise::{Components, Mean, rms, sample_sigma_g};
 use crate::progress::Progress;
@@ -42,7 +42,10 @@ impl<'a> Task<'a> {
             split.training.iter().filter_map(|&index| Some((index, campaign.runs.get(index)?))).collect();
         let scale = InputScale::of(runs.iter().map(|(_, run)| *run)).ok_or(TrainError::NoTrainingRuns)?;
         let data: Vec<Datum> = runs.iter().flat_map(|(index, run)| merged(run, *index, &scale)).collect();
-        let polynomial = Polynomial::fit(&data);
+        let polynomial = match settings.scale_factor_hz_per_g {
+            Some(stated) => Polynomial::fit_still(&data, scale.delta_f_half_span_hz / stated, MOST_T),
+            None => Polynomial::fit(&data),
+        };
         let baseline = Baseline { polynomial, scale };
         let residuals: Vec<_> = runs.iter().map(|(_, run)| (*run, baseline.residuals_g(run))).collect();
         let sigma_g = sample_sigma_g(residuals.iter().map(|(run, residuals)| (*run, residuals)));
