@@ -2,7 +2,7 @@
 
 use super::candidate::{Candidate, name_of};
 use super::case::{Benches, Case, Freedom, Held, Left, Noises};
-use super::evidence::{Score, joined, width};
+use super::evidence::{Bench, Score, joined, width};
 use super::instrument::Known;
 use super::sum_channel::{Response, response};
 use super::whitening::Columns;
@@ -137,12 +137,17 @@ impl Case<'_> {
         Some(Found { winner, rivals: order, strained, noises: scene.noises })
     }
 
-    /// Whether runs that were left out are explained better with the effect than without.
+    /// Whether runs that were left out are explained better with the effect than without: the residual alone, as the sum
+    /// of the frequencies has no held-out part of its own.
     fn foretells(&self, known: &Known, contender: &Contender) -> Option<bool> {
         let noises = contender.noises.as_ref()?;
-        let without = self.held_out(known, noises).deviance;
-        let with = self.held_out(&known.with(&contender.effect, &contender.values), noises).deviance;
-        Some(without - with > FORETOLD * contender.evidence.max(0.0))
+        let with = known.with(&contender.effect, &contender.values);
+        let freedom = self.adapting(known).delta;
+        let fitted =
+            |known: &Known| Some(Bench::new(&self.layout, noises.delta, &self.left(known).delta, &freedom)?.deviance);
+        let gain = fitted(known)? - fitted(&with)?;
+        let foretold = self.held_out(known, noises).deviance - self.held_out(&with, noises).deviance;
+        Some(foretold > FORETOLD * gain.max(0.0))
     }
 
     fn scene(&self, known: &Known, noises: &Noises) -> Option<Scene> {
