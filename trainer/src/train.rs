@@ -23,6 +23,7 @@ use crate::residuals::{Residuals, arranged, residuals};
 use protocol::Weights;
 use task::Task;
 
+pub(crate) use second_order::{HIDDEN_SIZE, OUTPUT_SIZE};
 pub(crate) use task::choose;
 use thiserror::Error;
 
@@ -152,18 +153,20 @@ pub fn train(
     settings: &TrainSettings,
     progress: &dyn Progress,
 ) -> Result<Trained, TrainError> {
-    let started;
-    let settings = if settings.effects.iter().any(|choice| choice.start.is_none()) {
-        Task::new(campaign, split, settings, progress)?;
-        started = started_well(campaign, split, settings, progress)?;
-        &started
-    } else {
-        settings
-    };
     let task = Task::new(campaign, split, settings, progress)?;
     if !settings.effects.is_empty() && settings.method != Method::SecondOrder {
         return Err(TrainError::EffectsNeedSecondOrder);
     }
+    if settings.effects.iter().all(|choice| choice.start.is_some()) {
+        return fitted(campaign, split, task);
+    }
+    let started = started_well(campaign, split, settings, progress)?;
+    fitted(campaign, split, Task::new(campaign, split, &started, progress)?)
+}
+
+/// The model of a task that is ready to be fitted.
+fn fitted(campaign: &Campaign, split: &Split, task: Task) -> Result<Trained, TrainError> {
+    let (settings, progress) = (task.settings, task.progress);
     let Search { restarts, best } = match &settings.method {
         Method::SecondOrder => second_order::search(&task),
         Method::Backprop(backprop) => backprop::search(&task, backprop)?,
@@ -190,9 +193,6 @@ fn started_well(
     settings: &TrainSettings,
     progress: &dyn Progress,
 ) -> Result<TrainSettings, TrainError> {
-    if settings.method != Method::SecondOrder {
-        return Err(TrainError::EffectsNeedSecondOrder);
-    }
     let restarts = settings.restarts.min(STATIC_RESTARTS);
     let alone = TrainSettings { effects: Vec::new(), restarts, ..settings.clone() };
     let model = train(campaign, split, &alone, progress)?.model;

@@ -1,13 +1,14 @@
 //! Every effect that might be missing, at every shape worth trying.
 
-use super::evidence::joined;
-use super::instrument::{Deeds, Instrument, Known};
+use super::case::{Case, Left};
+use super::evidence::{difference, joined};
+use super::instrument::Known;
 use super::layout::Layout;
-use super::sum_channel::{Response, SumChannel, response};
 use super::whitening::Columns;
 use crate::campaign::Campaign;
 use crate::expression::Expression;
-use crate::fit::effects::{Chosen, Deed};
+use crate::fit::effects::Chosen;
+use crate::train::{EffectChoice, choose};
 use firmware_core::effect::{self, About, Parameter, Role};
 use rayon::prelude::*;
 
@@ -38,41 +39,27 @@ const WIDTHS: [f64; 3] = [0.7, 2.0, 6.0];
 
 impl Candidate {
     /// All of them. `shown` says which effects this campaign can show.
-    pub fn all(instrument: &Instrument, layout: &Layout, sum: Option<&SumChannel>, shown: &[Chosen]) -> Vec<Self> {
-        let still = at_rest(layout);
+    pub fn all(case: &Case, shown: &[Chosen]) -> Vec<Self> {
+        let still = case.left(&Known::NONE);
         let shapes: Vec<(Chosen, Vec<f64>)> = shown
             .iter()
-            .flat_map(|effect| shapes(effect, layout).into_iter().map(|values| (effect.clone(), values)))
+            .flat_map(|effect| shapes(effect, &case.layout).into_iter().map(|values| (effect.clone(), values)))
             .collect();
-        let of = |(effect, values): (Chosen, Vec<f64>)| Self::new(instrument, layout, sum, &still, effect, values);
-        shapes.into_par_iter().map(of).collect()
+        shapes.into_par_iter().map(|(effect, values)| Self::new(case, &still, effect, values)).collect()
     }
 
-    fn new(
-        instrument: &Instrument,
-        layout: &Layout,
-        sum: Option<&SumChannel>,
-        still: &Deeds,
-        effect: Chosen,
-        values: Vec<f64>,
-    ) -> Self {
+    fn new(case: &Case, still: &Left, effect: Chosen, values: Vec<f64>) -> Self {
         let amplitudes = amplitudes(effect.about);
-        let before = instrument.residual_ug(layout, &[still]);
-        let sum_before = sum.map(|sum| sum.residual_under(layout, &[still]));
-        let told = response(effect.about) == Response::Told;
         let (mut columns, mut sums): (Vec<Columns>, Vec<Columns>) = (Vec::new(), Vec::new());
         for only in 0..amplitudes.len().max(1) {
             let mut values = values.clone();
             amplitudes.iter().filter(|&&index| index != amplitudes[only]).for_each(|&index| values[index] = 0.0);
-            let deeds = instrument.deeds(layout, &Known::NONE.with(&effect, &values));
-            columns.push(difference(&instrument.residual_ug(layout, &[&deeds]), &before));
-            if let (Some(sum), Some(before)) = (sum, &sum_before) {
-                let after = if told { sum.residual_under(layout, &[&deeds]) } else { before.clone() };
-                sums.push(difference(&after, before));
-            }
+            let left = case.left(&Known::NONE.with(&effect, &values));
+            columns.push(difference(&left.delta, &still.delta));
+            sums.extend(left.sum.as_ref().zip(still.sum.as_ref()).map(|(moved, still)| difference(moved, still)));
         }
-        let sum = (!sums.is_empty()).then(|| joined(&sums.iter().collect::<Vec<_>>()));
-        Self { effect, values, amplitudes, columns: joined(&columns.iter().collect::<Vec<_>>()), sum }
+        let sum = (!sums.is_empty()).then(|| joined(&sums));
+        Self { effect, values, amplitudes, columns: joined(&columns), sum }
     }
 }
 
@@ -84,14 +71,10 @@ pub(super) fn amplitudes(about: &About) -> Vec<usize> {
 
 /// The effects that the campaign has the channels for, and what channels that no effect follows might do.
 pub(super) fn with_channels(campaign: &Campaign) -> Vec<Chosen> {
-    let chosen = |about: &'static About| {
-        let Some(name) = about.channel else { return Some(Chosen::of(about)) };
-        let channel = campaign.channels.iter().position(|channel| channel == name)?;
-        let values: Vec<f64> = campaign.rows().map(|row| row.sample.channels[channel] as f64 * 1e-6).collect();
-        Some(Chosen { channel, origin: crate::metrics::mean(&values), ..Chosen::of(about) })
-    };
+    let runs: Vec<_> = campaign.runs.iter().collect();
+    let chosen = |about: &&About| choose(&EffectChoice::named(about.name), campaign, &runs).ok();
     let catalogue = effect::ALL.iter().filter(|about| about.is_on_device() && !about.takes_program());
-    let mut found: Vec<Chosen> = catalogue.filter_map(|about| chosen(about)).collect();
+    let mut found: Vec<Chosen> = catalogue.filter_map(chosen).collect();
     let program = effect::ALL.iter().find(|about| about.takes_program());
     for (about, channel) in program.into_iter().flat_map(|about| strangers(campaign).map(move |name| (about, name))) {
         let texts = FORMULAS.iter().map(|formula| formula.replace('#', channel));
@@ -158,11 +141,3 @@ fn places(about: &Parameter, layout: &Layout) -> Vec<f64> {
 
 /// Distance between places, °C.
 const PLACE_STEP_C: f64 = 1.5;
-
-fn at_rest(layout: &Layout) -> Deeds {
-    layout.stretches.iter().map(|stretch| vec![Deed::default(); stretch.cells.len()]).collect()
-}
-
-fn difference(a: &Columns, b: &Columns) -> Columns {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
-}

@@ -1,6 +1,6 @@
 //! One campaign and one model before the judge: what is measured, and what a set of effects leaves of it.
 
-use super::evidence::{Bench, Score, joined, stacked, width};
+use super::evidence::{Bench, difference, joined, stacked, width};
 use super::instrument::{Deeds, Instrument, Known};
 use super::layout::Layout;
 use super::noise_search::{first_guess, noise};
@@ -110,11 +110,7 @@ impl Case<'_> {
         let sum = self.sum.as_ref().map(|channel| {
             let free = known.each().filter(|one| response(one.effects[0].about) != Response::Told);
             let columns: Vec<Columns> = free.map(|one| self.alone(&one)).collect();
-            if columns.is_empty() {
-                channel.freedom.clone()
-            } else {
-                stacked(&channel.freedom, &joined(&columns.iter().collect::<Vec<_>>()))
-            }
+            if columns.is_empty() { channel.freedom.clone() } else { stacked(&channel.freedom, &joined(&columns)) }
         });
         Freedom { delta: self.freedom.clone(), sum }
     }
@@ -138,7 +134,7 @@ impl Case<'_> {
     /// The column of effects by themselves, µg, scaled up to be free.
     fn alone(&self, known: &Known) -> Columns {
         let (after, before) = (self.left(known).delta, self.left(&Known::NONE).delta);
-        after.iter().zip(&before).map(|(a, b)| (a - b) * FREE).collect()
+        difference(&after, &before).into_iter().map(|run| run * FREE).collect()
     }
 
     /// The benches for what is left, under `noises`.
@@ -182,8 +178,7 @@ impl Case<'_> {
                 sum.push(slope(moved, base, step));
             }
         }
-        let join = |columns: &[Columns]| joined(&columns.iter().collect::<Vec<_>>());
-        (join(&delta), (!sum.is_empty()).then(|| join(&sum)))
+        (joined(&delta), (!sum.is_empty()).then(|| joined(&sum)))
     }
 
     /// Fits the parameters of effects beside others that are held, in at most so many steps.
@@ -238,16 +233,6 @@ impl Benches<'_> {
     pub fn deviance(&self) -> f64 {
         self.delta.deviance + self.sum.as_ref().map_or(0.0, |bench| bench.deviance)
     }
-
-    /// Scores of columns whose amplitudes are shared by difference and sum.
-    pub fn tied(&self, delta: &Score, sum: Option<&Score>) -> Score {
-        let mut tied = delta.clone();
-        if let Some(sum) = sum {
-            tied.normal += &sum.normal;
-            tied.right += &sum.right;
-        }
-        tied
-    }
 }
 
 /// Amplitude in the sum of an effect that leaves it free.
@@ -266,7 +251,7 @@ fn generous(columns: &Columns, unit: f64) -> Columns {
 const GENEROUS: f64 = 1e3;
 
 fn slope(moved: &Columns, base: &Columns, step: f64) -> Columns {
-    moved.iter().zip(base).map(|(a, b)| (a - b) / step).collect()
+    difference(moved, base).into_iter().map(|run| run / step).collect()
 }
 
 /// Gauss–Newton step from the products of [residual, tangents].

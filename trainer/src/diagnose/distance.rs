@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::case::{Benches, Case};
-use super::evidence::{joined, width};
+use super::evidence::{difference, joined, stacked, width};
 use super::instrument::Known;
 use super::sum_channel::{Response, response};
 use super::whitening::Columns;
@@ -38,10 +38,10 @@ impl Foretold {
         let course = Pair { delta: difference(&with.delta, &without.delta), sum };
         let (delta, sum) = case.tangents(Some(&held), own);
         let near = Pair {
-            delta: joined(&[&course.delta, &delta]),
-            sum: course.sum.as_ref().zip(sum.as_ref()).map(|(course, sum)| joined(&[course, sum])),
+            delta: stacked(&course.delta, &delta),
+            sum: course.sum.as_ref().zip(sum.as_ref()).map(|(course, sum)| stacked(course, sum)),
         };
-        let far = Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), std::slice::from_ref(effect));
+        let far = Candidate::all(case, std::slice::from_ref(effect));
         let far = if far.len() > MOST_SHAPES { Vec::new() } else { far };
         let far = far.into_iter().map(|candidate| Pair { delta: candidate.columns, sum: candidate.sum });
         let unsaid = match response(effect.about) {
@@ -102,9 +102,9 @@ impl Products {
             })
         });
         let places = places.collect();
-        let delta = joined(&all.iter().map(|pair| &pair.delta).collect::<Vec<_>>());
+        let delta = joined(all.iter().map(|pair| &pair.delta));
         let sums: Option<Vec<&Columns>> = all.iter().map(|pair| pair.sum.as_ref()).collect();
-        let sum = sums.filter(|sums| !sums.is_empty()).map(|sums| joined(&sums));
+        let sum = sums.filter(|sums| !sums.is_empty()).map(joined);
         let normal = if all.is_empty() { DMatrix::zeros(0, 0) } else { benches.normal(&delta, sum.as_ref()) };
         Self { normal, places }
     }
@@ -141,8 +141,4 @@ impl Products {
         let absorbed = Cholesky::new(inner).map_or(own, |factor| cross.dot(&factor.solve(&cross)));
         (own - absorbed).max(0.0)
     }
-}
-
-fn difference(a: &Columns, b: &Columns) -> Columns {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

@@ -14,6 +14,7 @@ use super::layout::Layout;
 use super::whitening::{Columns, NoiseModel, Whitened};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// A residual and the instrument's freedom, under one noise.
 pub(super) struct Bench<'a> {
@@ -57,8 +58,11 @@ impl<'a> Bench<'a> {
 
     /// The score of columns.
     pub fn score(&self, columns: &Columns) -> Score {
-        let Whitened { columns, .. } = self.noise.whiten(self.layout, columns);
-        self.score_white(&columns)
+        let columns = &self.noise.whiten(self.layout, columns).columns;
+        let cross = product(&self.freedom, columns);
+        let normal = product(columns, columns) - cross.tr_mul(&self.factor.solve(&cross));
+        let right = product(columns, &self.residual).column(0) - cross.tr_mul(&self.absorbed);
+        Score { normal, right }
     }
 
     /// The scores of many candidates: `widths` says how many columns each has.
@@ -67,14 +71,13 @@ impl<'a> Bench<'a> {
         let cross = product(&self.freedom, &columns);
         let solved = self.factor.solve(&cross);
         let right = product(&columns, &self.residual).column(0) - cross.tr_mul(&self.absorbed);
-        let starts = widths.iter().scan(0, |next, width| Some(std::mem::replace(next, *next + width)));
-        let of = |(start, width): (usize, usize)| {
+        let of = |places: Range<usize>| {
+            let (start, width) = (places.start, places.len());
             let own: Columns = columns.iter().map(|run| run.columns(start, width).into_owned()).collect();
             let kept = product(&own, &own) - cross.columns(start, width).tr_mul(&solved.columns(start, width));
             Score { normal: kept, right: right.rows(start, width).into_owned() }
         };
-        let pairs: Vec<_> = starts.zip(widths.iter().copied()).collect();
-        pairs.into_par_iter().map(of).collect()
+        places(widths).collect::<Vec<_>>().into_par_iter().map(of).collect()
     }
 
     /// Of each candidate's columns: RMS size, and the greatest share of an amplitude that the instrument leaves.
@@ -89,16 +92,8 @@ impl<'a> Bench<'a> {
             let left = own - cross.column(column).dot(&solved.column(column));
             (size, if own > 0.0 { (left / own).max(0.0).sqrt() } else { 0.0 })
         };
-        let starts = widths.iter().scan(0, |next, width| Some(std::mem::replace(next, *next + width)));
         let best = |a: (f64, f64), b: (f64, f64)| (a.0.max(b.0), a.1.max(b.1));
-        starts.zip(widths).map(|(start, width)| (start..start + width).map(one).fold((0.0, 0.0), best)).collect()
-    }
-
-    fn score_white(&self, columns: &Columns) -> Score {
-        let cross = product(&self.freedom, columns);
-        let normal = product(columns, columns) - cross.tr_mul(&self.factor.solve(&cross));
-        let right = product(columns, &self.residual).column(0) - cross.tr_mul(&self.absorbed);
-        Score { normal, right }
+        places(widths).map(|places| places.map(one).fold((0.0, 0.0), best)).collect()
     }
 
     /// The residual less what the instrument's freedom makes of it, cell by cell.
@@ -119,6 +114,13 @@ impl<'a> Bench<'a> {
 }
 
 impl Score {
+    /// Of columns whose amplitudes this and `other` measurements share.
+    pub fn tied(mut self, other: &Self) -> Self {
+        self.normal += &other.normal;
+        self.right += &other.right;
+        self
+    }
+
     /// The amplitudes that explain most.
     pub fn amplitudes(&self) -> Option<DVector<f64>> {
         Some(-self.factor()?.solve(&self.right))
@@ -146,6 +148,15 @@ impl Score {
         }
         Cholesky::new(normal)
     }
+}
+
+/// Where the columns of each candidate stand.
+fn places(widths: &[usize]) -> impl Iterator<Item = Range<usize>> {
+    widths.iter().scan(0, |next, width| {
+        let start = *next;
+        *next += width;
+        Some(start..*next)
+    })
 }
 
 /// Σ AᵀB over the runs.
@@ -177,19 +188,25 @@ pub(super) fn width(columns: &Columns) -> usize {
     columns.first().map_or(0, DMatrix::ncols)
 }
 
+/// One less the other.
+pub(super) fn difference(a: &Columns, b: &Columns) -> Columns {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
 /// Columns of both, the first ones first.
 pub(super) fn stacked(first: &Columns, second: &Columns) -> Columns {
-    joined(&[first, second])
+    joined([first, second])
 }
 
 /// All columns side by side.
-pub(super) fn joined(columns: &[&Columns]) -> Columns {
+pub(super) fn joined<'a>(columns: impl IntoIterator<Item = &'a Columns>) -> Columns {
+    let columns: Vec<&Columns> = columns.into_iter().collect();
     let runs = columns.first().map_or(0, |columns| columns.len());
     let total = columns.iter().map(|columns| width(columns)).sum();
     let join = |run: usize| {
         let mut all = DMatrix::zeros(columns.first().map_or(0, |columns| columns[run].nrows()), total);
         let mut next = 0;
-        for columns in columns {
+        for columns in &columns {
             let own = &columns[run];
             all.columns_mut(next, own.ncols()).copy_from(own);
             next += own.ncols();

@@ -13,7 +13,7 @@ const STEPS: usize = 12;
 
 /// The coefficients of `effect` beside `known` that fit best; none if there is no sign of it.
 pub(super) fn fitted(case: &Case, known: &Known, noises: &Noises, effect: &Chosen) -> Option<Vec<f64>> {
-    let candidates = Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), std::slice::from_ref(effect));
+    let candidates = Candidate::all(case, std::slice::from_ref(effect));
     let benches = case.benches(&case.left(known), &case.adapting(known), noises)?;
     let best = case.screen(&benches, known, &candidates).into_iter().next().filter(|best| best.evidence > ENOUGH)?;
     let fitted = case.refit(Some(&case.held(known)), &best.alone(), &benches, STEPS);
@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn every_amplitude_of_every_effect_has_a_typical_size_within_its_bounds() {
-        for about in ALL.iter().filter(|about| about.is_on_device() && about.name != "expression") {
+        for about in ALL.iter().filter(|about| about.is_on_device() && !about.takes_program()) {
             for index in amplitudes(about) {
                 let (parameter, value) = (&about.parameters[index], typical(about)[index]);
                 assert!(value > 0.0 && value < parameter.high, "{} {}", about.name, parameter.name);

@@ -6,6 +6,7 @@ use super::whitening::Columns;
 use crate::fit::effects::{Chosen, Coefficients, Deed, deeds, mean_deed};
 use crate::model::Model;
 use crate::noise::{rms, sample_sigma_g};
+use crate::train::{HIDDEN_SIZE, OUTPUT_SIZE};
 use firmware_core::activation::{sigmoid, slope};
 use firmware_core::{Network, Scale};
 use nalgebra::DMatrix;
@@ -78,16 +79,17 @@ pub(super) type Deeds = Vec<Vec<Deed>>;
 const POWERS: (usize, usize, usize) = (3, 6, 7);
 /// How far it may differ from such a polynomial, as a share of the network's own size.
 const FREEDOM: f64 = 0.1;
-/// Expected size of an output weight and of a hidden weight, as in training.
-const OUTPUT_SIZE: f64 = 10.0;
-/// And of a hidden one.
-const HIDDEN_SIZE: f64 = 1.0;
 
 impl Instrument {
     /// The static map of `model`; its effects are not part of it.
     pub fn new(model: &Model) -> Self {
         let scaling = model.scaling.to_wire();
         Self { network: Network::new(&model.weights()), scale: Scale::new(&scaling), model: model.clone() }
+    }
+
+    /// What the static map reads at the scaled inputs, g.
+    pub fn reading_g(&self, x: f64, t: f64) -> f64 {
+        self.scale.reading_g(x, t, self.network.evaluate(x, t))
     }
 
     /// What the effects do in each cell.
@@ -118,8 +120,7 @@ impl Instrument {
     fn cell_residual_ug(&self, layout: &Layout, cell: &Cell, deed: &Deed) -> f64 {
         let x = cell.x - deed.delta_f_hz / layout.scale.delta_f_half_span_hz;
         let t = cell.t + deed.temperature_c / layout.scale.temperature_half_span_c;
-        let reading_g = self.scale.reading_g(x, t, self.network.evaluate(x, t)) - deed.bias_g;
-        (reading_g - cell.level_g) * UG
+        (self.reading_g(x, t) - deed.bias_g - cell.level_g) * UG
     }
 
     /// How the reading can change by retraining, µg per expected change: polynomials and the network's tangents.
@@ -149,7 +150,7 @@ impl Instrument {
         let residuals = |stretch: &super::layout::Stretch| -> Vec<f64> {
             let of = |row: &crate::campaign::Row| {
                 let [x, t] = layout.scale.inputs(&row.sample);
-                (self.scale.reading_g(x, t, self.network.evaluate(x, t)) - row.reference_g) * UG
+                (self.reading_g(x, t) - row.reference_g) * UG
             };
             stretch.run.rows.iter().map(of).collect()
         };
@@ -159,7 +160,7 @@ impl Instrument {
 
     /// RMS slope over temperature at a given frequency difference, µg/°C.
     pub fn ug_per_c(&self, layout: &Layout) -> f64 {
-        let reading = |x: f64, t: f64| self.scale.reading_g(x, t, self.network.evaluate(x, t)) * UG;
+        let reading = |x: f64, t: f64| self.reading_g(x, t) * UG;
         let slope = |cell: &Cell| (reading(cell.x, cell.t + 0.01) - reading(cell.x, cell.t - 0.01)) / 0.02;
         let slopes: Vec<f64> = layout.cells().map(slope).collect();
         rms(&slopes) / layout.scale.temperature_half_span_c
@@ -167,8 +168,7 @@ impl Instrument {
 
     /// At the middle of the domain, Hz/g.
     pub fn scale_factor_hz_per_g(&self, layout: &Layout) -> f64 {
-        let at = |x: f64| self.scale.reading_g(x, 0.0, self.network.evaluate(x, 0.0));
-        layout.scale.delta_f_half_span_hz * 2.0 / (at(1.0) - at(-1.0))
+        layout.scale.delta_f_half_span_hz * 2.0 / (self.reading_g(1.0, 0.0) - self.reading_g(-1.0, 0.0))
     }
 
     fn tangents(&self, cell: &Cell) -> impl Iterator<Item = f64> {

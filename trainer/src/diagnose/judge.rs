@@ -50,7 +50,7 @@ pub(super) fn judge(model: &Model, campaign: &Campaign, progress: &dyn Progress)
         case.layout.remember(&start);
     }
     let shown = with_channels(campaign);
-    let candidates = Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), &shown);
+    let candidates = Candidate::all(&case, &shown);
     let noises = case.noises(&case.left(&start), &case.adapting(&start), None);
     let screening = Screening::new(&case, &start, candidates, &noises).ok_or(DiagnoseError::NoNoise)?;
     let found = search(&mut case, &start, &screening.visible, noises, progress)?;
@@ -70,8 +70,7 @@ pub(super) fn starts(model: &Model, campaign: &Campaign, choices: &[EffectChoice
     for choice in choices {
         let chosen = choose(choice, campaign, &runs).ok()?;
         let start = choice.start.clone().or_else(|| {
-            let candidates =
-                Candidate::all(&case.instrument, &case.layout, case.sum.as_ref(), std::slice::from_ref(&chosen));
+            let candidates = Candidate::all(&case, std::slice::from_ref(&chosen));
             let found = case.missing(&known, &candidates, &noises)?;
             noises = found.winner.noises.unwrap_or(noises);
             Some(found.winner.values)
@@ -107,9 +106,9 @@ pub(super) fn scale(model: &Model) -> InputScale {
 
 /// The effects that the model has already.
 pub(super) fn in_model(model: &Model, campaign: &Campaign) -> Result<Known, DiagnoseError> {
+    let runs: Vec<_> = campaign.runs.iter().collect();
     let mut known = Known::NONE;
     for (choice, effect) in EffectChoice::of(model).iter().zip(&model.effects) {
-        let runs: Vec<_> = campaign.runs.iter().collect();
         let chosen = choose(choice, campaign, &runs)?;
         let value = |name: &str, start: f64| effect.parameters.get(name).copied().unwrap_or(start);
         let values: Vec<f64> = chosen.about.parameters.iter().map(|about| value(about.name, about.start)).collect();
@@ -168,18 +167,17 @@ fn search(
 fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) -> Diagnosis {
     let structure_ug = structure_ug(&found.noises.delta);
     let structured = structure_ug > STRUCTURE * case.sample_ug;
-    let held_out_ug = |known: &Known| case.held_out(known, &found.noises).about_mean_ug;
-    let futile = structured && held_out_ug(&found.known) > (1.0 - REMOVED) * held_out_ug(start);
+    let before = case.held_out(start, &found.noises);
+    let after_ug = |known: &Known| case.held_out(known, &found.noises).about_mean_ug;
+    let futile = structured && after_ug(&found.known) > (1.0 - REMOVED) * before.about_mean_ug;
     let unexplained = structured || found.strained > SURELY_STRAINED || found.formula.is_some();
     if futile {
         found.known = start.clone();
         found.steps.clear();
     }
     let dependences = case.dependences(start, &found.known, &found.noises, &campaign.channels);
-    let findings = findings(case, start, &found);
-    let residual_ug = findings
-        .first()
-        .map_or_else(|| case.held_out(start, &found.noises).residual_ug, |finding| finding.residual_before_ug);
+    let residual_ug = before.residual_ug;
+    let findings = findings(case, start, &found, residual_ug);
     let residual_after_ug = findings.last().map_or(residual_ug, |finding| finding.residual_after_ug);
     let verdict = match findings.first() {
         None if unexplained => Verdict::Unexplained,
@@ -207,9 +205,8 @@ fn structure_ug(noise: &NoiseModel) -> f64 {
     (2.0 * flicker.powi(2) + wander.powi(2) + (walk * 60.0).powi(2)).sqrt()
 }
 
-fn findings(case: &Case, start: &Known, found: &Findings) -> Vec<Finding> {
+fn findings(case: &Case, start: &Known, found: &Findings, mut residual_ug: f64) -> Vec<Finding> {
     let sigmas = case.sigmas(&found.known, &found.noises);
-    let mut residual_ug = case.held_out(start, &found.noises).residual_ug;
     let mut known = start.clone();
     let mut findings = Vec::new();
     for (index, step) in found.steps.iter().enumerate() {

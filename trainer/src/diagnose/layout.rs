@@ -57,7 +57,7 @@ pub(super) struct Layout<'a> {
 /// References closer than this are the same position, g.
 const SAME_POSITION_G: f64 = 1e-3;
 /// The channel that says how much acceleration lies across the input axis.
-const CROSS_CHANNEL: &str = "cross_g";
+pub(super) const CROSS_CHANNEL: &str = "cross_g";
 
 impl<'a> Layout<'a> {
     /// The cells of every run of the campaign.
@@ -111,6 +111,11 @@ impl<'a> Layout<'a> {
     }
 }
 
+/// What is left of gravity across the input axis, g.
+pub(super) fn across_g(level_g: f64) -> f64 {
+    (1.0 - level_g * level_g).max(0.0).sqrt()
+}
+
 fn brought_along(stretch: &mut Stretch, memory: Memory<f64>) {
     let temperature_c = |cell: &Cell| f64::from(stretch.run.rows[cell.rows.start].sample.temperature_uc) * 1e-6;
     let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -131,28 +136,28 @@ fn brought_along(stretch: &mut Stretch, memory: Memory<f64>) {
 fn cells_of(run: &Run, scale: &InputScale, cross: Option<usize>) -> Vec<Cell> {
     let start_us = run.rows.first().map_or(0, |row| row.sample.time_us);
     let mut found: Vec<Cell> = Vec::new();
-    let mut last_cross_uc = 0;
+    let mut last_cross_ug = 0;
     for rows in cells(run, scale) {
         let datum = mean(&run.rows[rows.clone()], 0, scale);
         let times = run.rows[rows.clone()].iter().map(|row| (row.sample.time_us - start_us) as f64 * 1e-6);
         let cross_ug = cross.map(|channel| run.rows[rows.start].sample.channels[channel]);
         let level_g = datum.reference_g;
         let moved = |last: &Cell| (last.level_g - level_g).abs() > SAME_POSITION_G;
-        let turned = cross_ug.is_some_and(|cross_ug| (cross_ug - last_cross_uc).unsigned_abs() > 1000);
+        let turned = cross_ug.is_some_and(|cross_ug| (cross_ug - last_cross_ug).unsigned_abs() > 1000);
         found.push(Cell {
             samples: datum.weight,
             time_s: times.sum::<f64>() / datum.weight,
             x: datum.x,
             t: datum.t,
             level_g,
-            cross_g: cross_ug.map_or_else(|| (1.0 - level_g * level_g).max(0.0).sqrt(), |ug| ug as f64 * 1e-6),
+            cross_g: cross_ug.map_or_else(|| across_g(level_g), |ug| ug as f64 * 1e-6),
             unseen_c: (rows.clone().map(|row| unseen_c(run, row).powi(2)).sum::<f64>() / datum.weight).sqrt(),
             beginning: 0.0,
             new_node: false,
             new_position: found.last().is_none_or(moved) || turned,
             rows,
         });
-        last_cross_uc = cross_ug.unwrap_or_default();
+        last_cross_ug = cross_ug.unwrap_or_default();
     }
     mark_nodes(run, &mut found);
     found

@@ -26,8 +26,8 @@ impl Screening {
     pub fn new(case: &Case, known: &Known, candidates: Vec<Candidate>, noises: &Noises) -> Option<Self> {
         let benches = case.benches(&case.left(known), &case.adapting(known), &noises.small())?;
         let widths: Vec<usize> = candidates.iter().map(|candidate| width(&candidate.columns)).collect();
-        let columns: Vec<_> = candidates.iter().map(|candidate| &candidate.columns).collect();
-        let left = benches.delta.shares_left(&joined(&columns), &widths);
+        let columns = joined(candidates.iter().map(|candidate| &candidate.columns));
+        let left = benches.delta.shares_left(&columns, &widths);
         let (mut visible, mut seen, mut shares) = (Vec::new(), Vec::new(), Vec::new());
         for (candidate, (own, share)) in candidates.into_iter().zip(left) {
             let about = candidate.effect.about;

@@ -222,7 +222,7 @@ impl Start {
         noises.sum = case.sum_noise(&left, &case.stiff(&known), None);
         let shown = with_channels(campaign);
         let hypothetical = |name: &String| {
-            let about = effect::about(name).filter(|about| about.is_on_device() && about.name != "expression");
+            let about = effect::about(name).filter(|about| about.is_on_device() && !about.takes_program());
             let about = about.ok_or_else(|| PlanError::UnknownEffect(name.clone()))?;
             let shown = shown.iter().find(|chosen| chosen.about.id == about.id);
             let fit = shown.and_then(|effect| Some((effect, fitted(case, &known, &noises, effect)?)));

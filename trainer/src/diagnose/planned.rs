@@ -1,15 +1,14 @@
 //! A planned recording beside the measurements that exist: rows as this sensor would give them.
 
+use super::instrument::Instrument;
+use super::layout::{CROSS_CHANNEL, across_g};
 use crate::campaign::{Campaign, Row, Run};
 use crate::fit::dataset::InputScale;
 use crate::metrics::mean;
 use crate::model::Model;
-use firmware_core::{Network, Scale};
 use nalgebra::{DMatrix, DVector, SVD};
 use protocol::limits::MAX_CHANNELS;
 
-/// The channel that gravity fills where it was not recorded.
-const CROSS_CHANNEL: &str = "cross_g";
 /// Steps of Newton's method; the map is nearly a line.
 const STEPS: usize = 12;
 
@@ -31,7 +30,7 @@ fn filled(campaign: &Campaign, channels: &[String], other: &Campaign) -> Vec<Run
         for (slot, name) in filled.iter_mut().zip(channels) {
             *slot = match place(campaign, name) {
                 Some(index) => row.sample.channels[index],
-                None if name == CROSS_CHANNEL => across_ug(row.reference_g),
+                None if name == CROSS_CHANNEL => (across_g(row.reference_g) * 1e6) as i64,
                 None => {
                     place(other, name).and_then(|index| Some(other.rows().next()?.sample.channels[index])).unwrap_or(0)
                 }
@@ -44,16 +43,10 @@ fn filled(campaign: &Campaign, channels: &[String], other: &Campaign) -> Vec<Run
     campaign.runs.iter().map(|run| Run { rows: run.rows.iter().map(row).collect(), ..run.clone() }).collect()
 }
 
-/// What is left of gravity across the input axis, µg.
-fn across_ug(level_g: f64) -> i64 {
-    ((1.0 - level_g * level_g).max(0.0).sqrt() * 1e6) as i64
-}
-
 /// The sensor as its model and measurements have it.
 struct Sensor {
     scale: InputScale,
-    line: Scale<f64>,
-    network: Network<f64>,
+    instrument: Instrument,
     sum: Option<DVector<f64>>,
 }
 
@@ -61,7 +54,7 @@ impl Sensor {
     fn new(model: &Model, measured: &Campaign) -> Self {
         let scale = super::judge::scale(model);
         let sum = sum_map(measured, &scale);
-        Self { scale, line: Scale::new(&model.scaling.to_wire()), network: Network::new(&model.weights()), sum }
+        Self { scale, instrument: Instrument::new(model), sum }
     }
 
     /// The run with the frequencies that this sensor would have; their sum only if it was measured before.
@@ -78,7 +71,7 @@ impl Sensor {
 
     /// The scaled frequency difference at which the model reads `level_g`.
     fn input(&self, level_g: f64, t: f64) -> f64 {
-        let reading_g = |x: f64| self.line.reading_g(x, t, self.network.evaluate(x, t));
+        let reading_g = |x: f64| self.instrument.reading_g(x, t);
         let mut x = 0.0;
         for _ in 0..STEPS {
             let slope = (reading_g(x + 1e-3) - reading_g(x - 1e-3)) / 2e-3;

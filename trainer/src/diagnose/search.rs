@@ -2,7 +2,7 @@
 
 use super::candidate::{Candidate, name_of};
 use super::case::{Benches, Case, Freedom, Held, Left, Noises};
-use super::evidence::{Bench, Score, joined, width};
+use super::evidence::{Bench, Score, difference, joined, width};
 use super::instrument::Known;
 use super::sum_channel::{Response, response};
 use super::whitening::Columns;
@@ -43,8 +43,7 @@ impl Contender {
                 let reach_c = self.reach_c_per_g();
                 *value + reach_c < *range_c.start() || *value - reach_c > *range_c.end()
             }
-            Role::Location => false,
-            Role::Amplitude | Role::Origin => false,
+            Role::Location | Role::Amplitude | Role::Origin => false,
         })
     }
 
@@ -221,9 +220,9 @@ impl Case<'_> {
 
     /// The best shape of every effect on the grid.
     pub fn screen(&self, benches: &Benches, known: &Known, candidates: &[Candidate]) -> Vec<Contender> {
-        let scores = |columns: Vec<&Columns>, bench: &super::evidence::Bench| {
+        let scores = |columns: Vec<&Columns>, bench: &Bench| {
             let widths: Vec<usize> = columns.iter().map(|columns| width(columns)).collect();
-            bench.scores(&joined(&columns), &widths)
+            bench.scores(&joined(columns), &widths)
         };
         let delta = scores(candidates.iter().map(|candidate| &candidate.columns).collect(), &benches.delta);
         let sum = benches
@@ -235,7 +234,10 @@ impl Case<'_> {
             if known.effects.iter().any(|effect| name_of(effect) == name_of(&candidate.effect)) {
                 continue;
             }
-            let score = benches.tied(&delta[index], sum.as_ref().map(|sum| &sum[index]));
+            let mut score = delta[index].clone();
+            if let Some(sum) = &sum {
+                score = score.tied(&sum[index]);
+            }
             let contender = self.judged(candidate, &score);
             match best.iter_mut().find(|other| other.is_same_effect(&contender)) {
                 Some(other) if other.evidence >= contender.evidence => {}
@@ -264,8 +266,4 @@ impl Case<'_> {
     fn mhz_per_ug(&self) -> f64 {
         self.instrument.scale_factor_hz_per_g(&self.layout) * 1e3 * 1e-6
     }
-}
-
-fn difference(a: &Columns, b: &Columns) -> Columns {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

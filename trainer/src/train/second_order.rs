@@ -17,10 +17,10 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 /// Expected size of an output weight, in units of the departure from the line.
-const OUTPUT_SIZE: f64 = 10.0;
+pub(crate) const OUTPUT_SIZE: f64 = 10.0;
 /// Expected size of a hidden weight. A unit this steep bends over the whole domain: an instrument is
 /// smooth until data insist on the contrary. `docs/decisions/0003-anchors.md` has the comparison.
-const HIDDEN_SIZE: f64 = 1.0;
+pub(crate) const HIDDEN_SIZE: f64 = 1.0;
 /// How far a resonator's slope may wander from the campaign's smooth scale factor before data must insist.
 const SLOPE_ALLOWANCE: f64 = 300e-6;
 /// How far the instrument may depart from a smooth one before data must insist, in units of its
