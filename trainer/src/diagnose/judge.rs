@@ -24,6 +24,8 @@ use std::collections::BTreeMap;
 
 /// Evidence that an effect must have: twice the logarithm of the likelihood ratio beyond its parameters' price.
 const ENOUGH: f64 = 25.0;
+/// Effects with less are compared with structures that no effect has before they are believed.
+const WEAK: f64 = 400.0;
 /// Most findings.
 const MOST_FINDINGS: usize = 4;
 /// Effects whose evidence differs by less are confounded; and by less than this share, as no formula is exact.
@@ -152,6 +154,11 @@ fn search(
         if next.winner.effect.expression.is_some() {
             // No effect that anybody knows follows this channel: it is described, not explained.
             found.formula = Some(next.winner);
+            break;
+        }
+        if next.winner.evidence < WEAK && case.strangest(&found.known, &next.noises) > next.winner.evidence {
+            // Something that no known effect does is more likely: the effect merely resembles it.
+            found.noises = next.noises;
             break;
         }
         let noises = next.winner.noises.unwrap_or(found.noises);

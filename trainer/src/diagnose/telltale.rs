@@ -65,7 +65,15 @@ impl Case<'_> {
         let left = self.left(known).delta;
         let freedom = self.adapting(known).delta;
         let scene = Scene { case: self, noise: noises.delta, left: &left, freedom: &freedom };
-        let mut found = scene.followed(&self.suspects(channels));
+        let mut suspects = self.structures();
+        let other = self.followed(channels).into_iter().filter(|(name, _)| name != TEMPERATURE);
+        suspects.extend(other.map(|(name, columns)| Suspect {
+            depends_on: vec![name],
+            period_s: None,
+            columns,
+            smooth: false,
+        }));
+        let mut found = scene.followed(&suspects);
         found.extend(scene.poses());
         found.extend(self.swing(known, noises));
         found.retain(|one| one.evidence > ENOUGH && one.size_ug > MATTERS * self.sample_ug);
@@ -73,17 +81,17 @@ impl Case<'_> {
         found
     }
 
-    fn suspects(&self, channels: &[String]) -> Vec<Suspect> {
+    /// Most evidence of a structure that no known effect has, where these effects are at work.
+    pub fn strangest(&self, known: &Known, noises: &Noises) -> f64 {
+        let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
+        let scene = Scene { case: self, noise: noises.delta, left: &left, freedom: &freedom };
+        scene.followed(&self.structures()).iter().map(|one| one.evidence).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    fn structures(&self) -> Vec<Suspect> {
         let mut all = self.days();
         all.extend(self.odd_runs());
         all.push(self.kink());
-        let other = self.followed(channels).into_iter().filter(|(name, _)| name != TEMPERATURE);
-        all.extend(other.map(|(name, columns)| Suspect {
-            depends_on: vec![name],
-            period_s: None,
-            columns,
-            smooth: false,
-        }));
         all
     }
 
