@@ -49,6 +49,8 @@ fn main(report: &Report) -> String {
         details::runs(report),
         details::ladder(report),
         diagnosis,
+        heading("definitions", "What the figures are"),
+        answer::definitions(report),
         heading("origin", "Where this comes from"),
         details::origin(&report.origin),
         FOOTER.to_owned(),
@@ -67,7 +69,7 @@ fn header(report: &Report) -> String {
         "<header><h1>Temperature compensation: {}</h1>\n<p>{} rows in {} runs, {held_out} of them held out; readings in \
          the device's own arithmetic.</p></header>\n",
         escaped(name(report)),
-        report.origin.rows,
+        table::fixed(report.origin.rows as f64, 0),
         comparison.runs.len(),
     )
 }
@@ -79,6 +81,7 @@ fn contents(report: &Report) -> String {
         .chain(fixed("runs", "Run by run", true))
         .chain(fixed("ladder", "What each effect is worth", !report.ladder.is_empty()))
         .chain(fixed("diagnosis", "Diagnosis", report.diagnosis.is_some()))
+        .chain(fixed("definitions", "What the figures are", true))
         .chain(fixed("origin", "Where this comes from", true))
         .map(|(id, title)| format!("<li><a href=\"#{id}\">{title}</a></li>"));
     format!("<nav aria-label=\"Contents\"><ul>{}</ul></nav>\n", links.collect::<String>())

@@ -18,7 +18,8 @@ use trainer::train::{EffectChoice, TrainSettings};
 
 /// Compares a model with measurements, run by run, in the device's own arithmetic.
 #[derive(Args)]
-#[command(after_help = "Example:  tempco compare model.toml campaign.csv --fail-above 8")]
+#[command(after_help = "Example:  tempco compare model.toml campaign.csv --fail-above 8
+          tempco compare model.toml campaign.csv --report report.html --diagnose")]
 pub struct Compare {
     /// Model file
     model: PathBuf,
@@ -66,6 +67,9 @@ impl Compare {
         if let Some(path) = &self.report {
             let html = html(&self.report(&model, &campaign)?).map_err(Failure::new)?;
             std::fs::write(path, html).map_err(|error| Failure::io(path, &error))?;
+            if !self.json {
+                anstream::println!("Report written to {}", path.display());
+            }
         }
         let exceeded = self.fail_above.is_some_and(|limit_ug| comparison.residual_ug > limit_ug);
         Ok(if exceeded { Answer::No } else { Answer::Yes })
@@ -74,7 +78,9 @@ impl Compare {
     fn report(&self, model: &Model, campaign: &Campaign) -> Result<Report, Failure> {
         let mut report = report(model, campaign)?;
         report.origin.files = DataFile::all_of(campaign).map_err(Failure::new)?;
-        if report.origin.same_campaign && !model.effects.is_empty() {
+        // Without a level to train on, the lower rungs would need a scale factor that the model file doesn't state.
+        let trainable = report.comparison.sensitivity_ppm.is_some();
+        if report.origin.same_campaign && trainable && !model.effects.is_empty() {
             report.ladder = rungs(model, campaign)?;
         }
         if self.diagnose {

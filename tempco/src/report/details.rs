@@ -1,6 +1,6 @@
 //! The tables of the report: runs, ladder, provenance.
 
-use super::table::{Column, Table, figure};
+use super::table::{Column, Table, figure, fixed};
 use crate::page::escaped;
 use std::fmt::Write;
 use trainer::compare::RunComparison;
@@ -34,10 +34,10 @@ fn run_cells(run: &RunComparison) -> [String; 8] {
         run.run.clone(),
         run.kind.clone(),
         if run.held_out { "held out".to_owned() } else { "training".to_owned() },
-        figure(run.samples as f64).replace(".00", ""),
-        figure(run.residual_ug),
-        figure(run.mean_ug),
-        figure(run.about_mean_ug),
+        run.samples.to_string(),
+        fixed(run.residual_ug, 2),
+        fixed(run.mean_ug, 2),
+        fixed(run.about_mean_ug, 2),
         run.flagged.to_string(),
     ]
 }
@@ -79,7 +79,7 @@ pub fn origin(origin: &Origin) -> String {
         ),
         ("Residual in training", format!("{} µg RMS", figure(model.training_residual * 1e6))),
         ("Model's campaign", format!("SHA-256 {}", model.campaign)),
-        ("This campaign", format!("SHA-256 {}, {} rows; {same}", origin.campaign, origin.rows)),
+        ("This campaign", format!("SHA-256 {}, {} rows; {same}", origin.campaign, fixed(origin.rows as f64, 0))),
         ("Report", origin.reported_by.clone()),
     ];
     let mut text = String::from("<dl class=\"facts\">\n");

@@ -75,6 +75,11 @@ pub fn figure(value: f64) -> String {
         size if size >= 1.0 => 2,
         _ => 3,
     };
+    fixed(value, decimals)
+}
+
+/// A figure with so many digits after the point, a true minus, and groups of three from ten thousand on.
+pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.abs());
     let (whole, fraction) = text.split_once('.').map_or((text.as_str(), None), |(a, b)| (a, Some(b)));
     let grouped = if whole.len() > 4 { grouped(whole) } else { whole.to_owned() };

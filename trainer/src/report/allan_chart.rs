@@ -2,8 +2,8 @@
 
 use super::chart::{Axis, Chart, Layer, Tone};
 use crate::compare::{Comparison, RunFigures};
-use crate::metrics::allan::{self, AllanPoint};
-use crate::metrics::allan_model::{self, AllanModel, Coefficient};
+use crate::metrics::allan::AllanPoint;
+use crate::metrics::allan_model::{AllanModel, Coefficient};
 
 /// Recordings in one plot.
 const MOST_RUNS: usize = 3;
@@ -39,11 +39,7 @@ pub fn allan_chart(comparison: &Comparison) -> Option<Chart> {
     Some(Chart {
         id: "allan".to_owned(),
         title: "Allan deviation at rest".to_owned(),
-        caption: format!(
-            "{fitted} {} Bands are ±1 standard uncertainty of each point; {}",
-            allan_model::DEFINITION,
-            allan::DEFINITION
-        ),
+        caption: format!("{fitted} The band is ±1 standard uncertainty of each point."),
         x,
         y,
         layers,
@@ -83,7 +79,7 @@ fn curve(model: &AllanModel, x: &Axis, y: &Axis) -> Layer {
     let taus: Vec<f64> = (0..=CURVE).map(|k| from * (to / from).powf(f64::from(k) / f64::from(CURVE))).collect();
     Layer::Line {
         name: "fitted noise".to_owned(),
-        tone: Tone::Second,
+        tone: Tone::Fourth,
         x: x.all_rounded(taus.iter().copied()),
         y: y.all_rounded(taus.iter().map(|tau_s| model.deviation_ug(*tau_s))),
         dashed: true,
@@ -93,7 +89,11 @@ fn curve(model: &AllanModel, x: &Axis, y: &Axis) -> Layer {
 fn words(model: &AllanModel) -> String {
     let stated = |name: &str, coefficient: Coefficient, unit: &str| match coefficient {
         Coefficient { value: 0.0, .. } => format!("no {name} to be seen"),
-        Coefficient { value, sigma } => format!("{name} {value:.2} ± {sigma:.2} {unit}"),
+        Coefficient { value, sigma } => {
+            // Two digits of the uncertainty, and as many of the value.
+            let digits = (1.0 - sigma.max(f64::MIN_POSITIVE).log10().floor()).clamp(0.0, 6.0) as usize;
+            format!("{name} {value:.digits$} ± {sigma:.digits$} {unit}")
+        }
     };
     let walk = |Coefficient { value, sigma }: Coefficient| Coefficient { value: value * 60.0, sigma: sigma * 60.0 };
     format!(
@@ -102,4 +102,20 @@ fn words(model: &AllanModel) -> String {
         stated("bias instability B", model.flicker_ug, "µg"),
         stated("random walk K", walk(model.walk_ug_per_sqrt_s), "µg/√h")
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_are_stated_with_the_digits_that_they_have() {
+        let model = AllanModel {
+            white_ug_sqrt_s: Coefficient { value: 4.883_7, sigma: 0.004_2 },
+            flicker_ug: Coefficient { value: 1.4, sigma: 1.7 },
+            walk_ug_per_sqrt_s: Coefficient { value: 0.0, sigma: 0.0 },
+        };
+        let text = "Fitted: white noise N 4.8837 ± 0.0042 µg·√s; bias instability B 1.4 ± 1.7 µg; no random walk K to be seen.";
+        assert_eq!(words(&model), text);
+    }
 }

@@ -4,7 +4,7 @@ use super::chart::{Axis, Chart, Layer};
 use super::samples::{RunName, Sample};
 use crate::campaign::Campaign;
 use crate::model::Model;
-use crate::sensitivity::{self, SlopeError};
+use crate::sensitivity::SlopeError;
 
 /// Columns and rows: few enough that each cell can bear its number.
 const COLUMNS: usize = 12;
@@ -111,10 +111,10 @@ pub fn sensitivity_map(model: &Model, campaign: &Campaign) -> Option<Chart> {
     Some(Chart {
         id: "sensitivity-map".to_owned(),
         title: "Error of the local slope".to_owned(),
-        caption: format!(
-            "Each cell shows its worst value, ppm: {} A model that learnt levels by heart is off by thousands.",
-            sensitivity::DEFINITION
-        ),
+        caption:
+            "How far the slope of the model is from the measured scale factor; each cell shows its worst value, ppm. \
+                  A model that learnt levels by heart is off by thousands."
+                .to_owned(),
         x,
         y,
         layers: vec![grid.layer("slope error", "ppm", values)],

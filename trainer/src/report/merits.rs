@@ -48,15 +48,18 @@ fn stability(run: &RunFigures) -> Vec<Merit> {
     pairs.map(merit).collect()
 }
 
+/// One of the figures over temperature.
+type Figure = fn(&FullTemperature) -> f64;
+
 fn over_temperature(run: &RunFigures) -> Vec<Merit> {
-    let get = |figures: &Figures, value: fn(&FullTemperature) -> f64| figures.full_temperature.as_ref().map(value);
-    let all: [(&str, &str, fn(&FullTemperature) -> f64); 4] = [
+    let get = |figures: &Figures, value: Figure| figures.full_temperature.as_ref().map(value);
+    let all: [(&str, &str, Figure); 4] = [
         ("Variation of scale factor", "ppm", |figures| figures.scale_factor_variation_ppm),
         ("Slope of scale factor", "ppm/K", |figures| figures.scale_factor_temperature_sensitivity_ppm_per_k),
         ("Variation of bias", "µg", |figures| figures.bias_variation_ug),
         ("Slope of bias", "µg/K", |figures| figures.bias_temperature_sensitivity_ug_per_k),
     ];
-    let merit = |(name, unit, value): (&str, &str, fn(&FullTemperature) -> f64)| {
+    let merit = |(name, unit, value): (&str, &str, Figure)| {
         let pair = [get(&run.raw, value)?, get(&run.compensated, value)?];
         Some(of_run(run, name, full_temperature::DEFINITION, unit, pair))
     };

@@ -2,7 +2,7 @@
 
 use super::chart::{Axis, Chart, Layer, Tone};
 use crate::compare::{Comparison, RunFigures, mean_slope_g_per_hz};
-use crate::metrics::full_temperature::{DEFINITION, FullTemperature, Node};
+use crate::metrics::full_temperature::{FullTemperature, Node};
 use crate::metrics::mean;
 use crate::metrics::states::{State, states};
 use crate::model::Model;
@@ -12,6 +12,8 @@ use crate::residuals::{Residuals, RunResiduals};
 const MOST_RUNS: usize = 6;
 /// The levels of the paper, g, with their names.
 const LEVELS: [(f64, &str); 3] = [(-1.0, "−1 g"), (0.0, "0 g"), (1.0, "+1 g")];
+/// States closer than this belong to one node, °C.
+const SAME_NODE_C: f64 = 3.0;
 /// How far a level may be from one of them, g.
 const LEVEL_TOLERANCE_G: f64 = 0.05;
 
@@ -40,22 +42,31 @@ pub fn node_charts(comparison: &Comparison) -> Vec<Chart> {
         let each = runs.iter().enumerate();
         each.map(|(k, (run, _, after))| series(&run.run, Tone::series(k), value(after))).collect()
     };
+    // All raw runs look alike, and so do all compensated ones: the first of each stands in the legend.
+    let named = |name: &'static str, k: usize| if k == 0 { name } else { "" };
     let both = |value: &dyn Fn(&FullTemperature) -> Vec<[f64; 2]>| -> Vec<Series> {
-        let before = runs.iter().map(|(run, raw, _)| series(&format!("raw, {}", run.run), Tone::Second, value(raw)));
-        let after =
-            runs.iter().map(|(run, _, after)| series(&format!("compensated, {}", run.run), Tone::First, value(after)));
+        let each = || runs.iter().enumerate();
+        let before = each().map(|(k, (_, raw, _))| series(named("raw", k), Tone::Second, value(raw)));
+        let after = each().map(|(k, (_, _, after))| series(named("compensated", k), Tone::First, value(after)));
         before.chain(after).collect()
     };
+    let of = list(runs.iter().map(|(run, ..)| run.run.as_str()));
     let ppm = |series: Vec<Series>, id: &str, title: &str| {
-        chart(id, title, DEFINITION, ("deviation from the mean", "ppm"), series)
+        chart(
+            id,
+            title,
+            &format!("{of}: K1 of each node less its mean over the nodes."),
+            ("K1 less its mean", "ppm"),
+            &series,
+        )
     };
     let bias = |series: Vec<Series>, id: &str, title: &str, unit: &str| {
         chart(
             id,
             title,
-            "B0 less its mean over the nodes, as defined beside the scale factor.",
+            &format!("{of}: B0 of each node less its mean over the nodes."),
             ("bias less its mean", unit),
-            series,
+            &series,
         )
     };
     vec![
@@ -64,6 +75,11 @@ pub fn node_charts(comparison: &Comparison) -> Vec<Chart> {
         bias(both(&bias_mg), "bias", "Bias over temperature, raw and compensated", "mg"),
         bias(compensated(&bias_ug), "bias-compensated", "Bias over temperature, compensated", "µg"),
     ]
+}
+
+fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.collect();
+    format!("Run{} {}", if names.len() > 1 { "s" } else { "" }, names.join(", "))
 }
 
 fn relative_ppm(nodes: &[Node]) -> Vec<[f64; 2]> {
@@ -93,14 +109,14 @@ pub fn level_charts(model: &Model, comparison: &Comparison, residuals: &Residual
             "Raw output over temperature at each level",
             &format!("Run {name}: Δf over the mean scale factor, less its mean at the level."),
             ("output less its mean", "mg"),
-            raw.collect(),
+            &raw.collect::<Vec<_>>(),
         ),
         chart(
             "levels-compensated",
             "Compensated output over temperature at each level",
             &format!("Run {name}: reading less reference, nothing else taken off."),
             ("reading less reference", "µg"),
-            levels(run, left_ug).collect(),
+            &levels(run, left_ug).collect::<Vec<_>>(),
         ),
     ]
 }
@@ -129,16 +145,24 @@ fn series(name: &str, tone: Tone, mut points: Vec<[f64; 2]>) -> Series {
     Series { name: name.to_owned(), tone, points }
 }
 
-fn chart(id: &str, title: &str, caption: &str, (label, unit): (&str, &str), all: Vec<Series>) -> Chart {
+fn chart(id: &str, title: &str, caption: &str, (label, unit): (&str, &str), all: &[Series]) -> Chart {
     let values = |axis: usize| all.iter().flat_map(move |series| series.points.iter().map(move |point| point[axis]));
     let (x, y) = (Axis::linear("temperature", "°C", values(0)), Axis::linear(label, unit, values(1)));
     let mut layers = Vec::new();
-    for Series { name, tone, points } in &all {
-        let (xs, ys) = (x.all_rounded(points.iter().map(|p| p[0])), y.all_rounded(points.iter().map(|p| p[1])));
+    for Series { name, tone, points } in all {
+        let rounded = |axis: &Axis, of: usize, points: &[[f64; 2]]| axis.all_rounded(points.iter().map(|p| p[of]));
+        let nodes = node_means(points);
+        let (line_x, line_y) = (rounded(&x, 0, &nodes), rounded(&y, 1, &nodes));
+        layers.push(Layer::Line { name: String::new(), tone: *tone, x: line_x, y: line_y, dashed: false });
         // Marks on the line, so that a line is told from another without colours.
-        let run = Vec::new();
-        layers.push(Layer::Line { name: String::new(), tone: *tone, x: xs.clone(), y: ys.clone(), dashed: false });
-        layers.push(Layer::Dots { name: name.clone(), tone: *tone, x: xs, y: ys, run });
+        let (xs, ys) = (rounded(&x, 0, points), rounded(&y, 1, points));
+        layers.push(Layer::Dots { name: name.clone(), tone: *tone, x: xs, y: ys, run: Vec::new() });
     }
     Chart { id: id.to_owned(), title: title.to_owned(), caption: caption.to_owned(), x, y, layers }
+}
+
+/// A node may have two states at one level, +0 g and −0 g: the line goes through their mean.
+fn node_means(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let centre = |node: &[[f64; 2]]| [0, 1].map(|axis| mean(&node.iter().map(|p| p[axis]).collect::<Vec<_>>()));
+    points.chunk_by(|a, b| b[0] - a[0] < SAME_NODE_C).map(centre).collect()
 }

@@ -59,3 +59,39 @@ pub fn verdict(comparison: &Comparison, raw_ug: f64) -> Verdict {
         sound,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sensitivity::Sensitivity;
+
+    fn comparison(residual_ug: f64, held_out: bool, worst: f64) -> Comparison {
+        Comparison {
+            residual_ug,
+            noise_floor_ug: Some(5.0),
+            held_out,
+            sensitivity_ppm: Some(Sensitivity { rms: worst / 2.0, worst }),
+            warnings: Vec::new(),
+            runs: Vec::new(),
+            figures: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_sentence_says_how_much_better_and_how_far_from_the_noise() {
+        let verdict = verdict(&comparison(8.0, true, 30.0), 25_000.0);
+        assert!(verdict.sound);
+        for part in ["never saw", "8.0 µg RMS", "3125 times less", "1.6 times the noise"] {
+            assert!(verdict.sentence.contains(part), "{part}: {}", verdict.sentence);
+        }
+    }
+
+    #[test]
+    fn it_warns_of_a_model_that_is_no_better_or_no_accelerometer_or_only_knows_its_training() {
+        assert!(!verdict(&comparison(30.0, true, 30.0), 20.0).sound);
+        let classifier = verdict(&comparison(5.1, true, 90_000.0), 25_000.0);
+        assert!(!classifier.sound && classifier.sentence.contains("do not use it"), "{}", classifier.sentence);
+        let unchecked = verdict(&comparison(5.1, false, 30.0), 25_000.0).sentence;
+        assert!(unchecked.contains("none was held out") && unchecked.contains("that is the noise"), "{unchecked}");
+    }
+}

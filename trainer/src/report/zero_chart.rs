@@ -7,14 +7,16 @@ use super::thin::thin;
 use crate::metrics::mean;
 use crate::residuals::{Residuals, RunResiduals};
 
-/// The last run at rest that was held out, or the last one where none was.
+/// References closer than this are one level, g.
+const SAME_LEVEL_G: f64 = 0.01;
+
+/// The longest zero-bias run that was held out, or of all where none was; else another recording at one level.
 #[must_use]
 pub fn zero_chart(runs: &[RunName], residuals: &Residuals, line: &RawLine) -> Option<Chart> {
-    let at_rest = |kind: &str| kind == "zero" || kind == "static";
     let any_held_out = runs.iter().any(|run| run.held_out);
-    let wanted = |run: &RunName| at_rest(&run.kind) && (run.held_out || !any_held_out);
-    let index = runs.iter().rposition(wanted)?;
-    let run = residuals.runs.get(index)?;
+    let counts = |(name, run): &(&RunName, &RunResiduals)| (name.held_out || !any_held_out) && at_rest(run);
+    let candidates = runs.iter().zip(&residuals.runs).filter(counts);
+    let (_, run) = candidates.max_by_key(|(name, run)| (name.kind == "zero", run.residuals_g.len()))?;
     let raw_ug = about_mean_ug(&line.residuals_g(run.run));
     let compensated_ug = about_mean_ug(&run.residuals_g);
     let minutes = minutes(run);
@@ -40,6 +42,13 @@ pub fn zero_chart(runs: &[RunName], residuals: &Residuals, line: &RawLine) -> Op
         x,
         y,
     })
+}
+
+/// At one level from beginning to end.
+fn at_rest(run: &RunResiduals) -> bool {
+    let mut levels = run.run.rows.iter().map(|row| row.reference_g);
+    let Some(first) = levels.next() else { return false };
+    (run.run.kind == "zero" || run.run.kind == "static") && levels.all(|level| (level - first).abs() < SAME_LEVEL_G)
 }
 
 fn about_mean_ug(values_g: &[f64]) -> Vec<f64> {
