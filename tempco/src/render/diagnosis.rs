@@ -26,7 +26,7 @@ pub fn first_to_add(diagnosis: &Diagnosis) -> Option<&str> {
 }
 
 /// The answer in a sentence or two.
-fn verdict(diagnosis: &Diagnosis) -> String {
+pub fn verdict(diagnosis: &Diagnosis) -> String {
     let Diagnosis { verdict, findings, residual_ug, residual_after_ug, noise_floor_ug, explainable, .. } = diagnosis;
     let found: Vec<&str> = findings.iter().map(|finding| finding.effect.as_str()).collect();
     let with = match (verdict, found.len()) {
@@ -117,7 +117,7 @@ fn explained(finding: &Finding) -> String {
     if let Some(about) = about {
         let _ = writeln!(text, "  {}\n  {}", about.summary, about.equation);
     }
-    let parameters: Vec<String> = ordered(finding, about).into_iter().map(parameter).collect();
+    let parameters = parameters(finding);
     if !parameters.is_empty() {
         let _ = writeln!(text, "  {}", parameters.join(", "));
     }
@@ -132,6 +132,11 @@ fn explained(finding: &Finding) -> String {
         let _ = writeln!(text, "  No instrument can foresee it: it can be known, not compensated.");
     }
     text
+}
+
+/// The parameters in the effect's own order, each with its uncertainty and unit.
+pub fn parameters(finding: &Finding) -> Vec<String> {
+    ordered(finding, about(&finding.effect)).into_iter().map(parameter).collect()
 }
 
 /// The parameters in the effect's own order, with their units.
