@@ -45,7 +45,7 @@ fn readings_over_the_line_are_the_hosts_bit_for_bit() {
 
 #[test]
 fn a_bad_line_changes_no_bit_and_repeats_no_step() {
-    let faults = LineFaults { flip_ppm: 1000, loss_ppm: 1000, duplication_ppm: 1000 };
+    let faults = LineFaults::each(1000);
     let samples = example::samples(500);
     for seed in 0..4 {
         let line = FaultyLine::new(VirtualLine::new(example::SERIAL), faults, seed);
@@ -159,14 +159,14 @@ fn every_sensor_fault_is_a_flag_and_never_a_number() {
 
 #[test]
 fn a_bus_that_fails_at_any_byte_is_a_fault_and_one_that_holds_is_not() {
-    // Address and register, then address again is not modelled: 1 + 1 + 2 bytes on I²C, 1 + 18 on SPI.
+    // Two registers of 1 + 1 + 2 bytes on I²C, addresses counted once; 1 + 18 on SPI.
     for bytes in 0..=25 {
         let mut instrument = calibrated();
         instrument.set(F1_HZ, F2_HZ, ROOM_C);
         instrument.thermometer_mut().fault = PartFault::BusFailsAfter(bytes);
         instrument.counter_mut().fault = PartFault::BusFailsAfter(bytes);
         let (sample, _) = instrument.measure().expect("a perfect line");
-        assert_eq!(sample.faults.contains(Status::THERMOMETER_FAULT), bytes < 4, "after {bytes} bytes");
+        assert_eq!(sample.faults.contains(Status::THERMOMETER_FAULT), bytes < 8, "after {bytes} bytes");
         assert_eq!(sample.faults.contains(Status::RESONATOR_FAULT), bytes < 19, "after {bytes} bytes");
     }
 }
@@ -201,7 +201,7 @@ fn every_value_of_the_temperature_register_is_its_temperature_or_a_fault() {
         thermometer.bus_mut().force_register(bits);
         let steps = bits.cast_signed();
         let temperature_c = f64::from(steps) * 0.007_812_5;
-        match thermometer.temperature_uc() {
+        match thermometer.temperature_uc(0) {
             Ok(found_uc) => {
                 assert!((-60.0..=155.0).contains(&temperature_c));
                 assert!((f64::from(found_uc) - temperature_c * 1e6).abs() <= 0.5);

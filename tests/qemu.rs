@@ -87,7 +87,7 @@ fn without_sensors_it_measures_flags_and_never_hangs() {
 
 #[test]
 fn a_bad_line_to_the_microcontroller_changes_no_bit() {
-    let faults = LineFaults { flip_ppm: 300, loss_ppm: 300, duplication_ppm: 300 };
+    let faults = LineFaults::each(300);
     let microcontroller = Microcontroller::start(example::SERIAL.as_bytes(), &[], Duration::from_millis(100));
     let mut link = Link::new(FaultyLine::new(microcontroller, faults, 1)).with_tries(100);
     link.upload_blob(&example::blob()).expect("repetition gets it through");
