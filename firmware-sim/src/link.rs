@@ -43,6 +43,18 @@ impl<T: Transport + ?Sized> Transport for &mut T {
     }
 }
 
+impl<T: Transport + ?Sized> Transport for Box<T> {
+    type Error = T::Error;
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Self::Error> {
+        (**self).send(bytes)
+    }
+
+    fn receive(&mut self) -> Result<Option<u8>, Self::Error> {
+        (**self).receive()
+    }
+}
+
 /// Why a request got no useful answer.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LinkError<E = Infallible> {

@@ -2,13 +2,16 @@
 //!
 //! A command parses, calls the library and renders; it computes nothing.
 
-mod calibration_region;
 mod command;
 mod data;
 mod failure;
+mod hex;
+mod key;
+mod link;
 mod plot;
 mod progress;
 mod recordings;
+mod region;
 mod render;
 mod subject;
 mod table;
