@@ -172,7 +172,7 @@ fn the_instrument_itself_wakes_up_with_the_old_or_the_new_one_and_its_bits() {
     let provenances = [old.provenance, *b"exampl-2"];
     let new = protocol::Blob { provenance: provenances[1], ..new };
     let mut seen = [0; 2];
-    for step in (0..450).step_by(3) {
+    for step in (0..550).step_by(3) {
         let mut link = Link::new(VirtualLine::new(example::SERIAL));
         link.upload_blob(&old).expect("a perfect line");
         let flash = link.transport_mut().flash_mut();

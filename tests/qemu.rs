@@ -4,9 +4,9 @@
 //! measuring must end in flags.
 
 use firmware_core::Compensator;
-use firmware_sim::link::Link;
+use firmware_sim::link::{Content, Kept, Link, LinkError};
 use firmware_sim::virtual_faulty_line::{FaultyLine, LineFaults};
-use protocol::{Blob, Reading, Sample, Status};
+use protocol::{Blob, Reading, Refusal, Sample, Source, Status, Streamed};
 use std::time::Duration;
 use tests::example;
 use tests::qemu::Microcontroller;
@@ -83,6 +83,37 @@ fn without_sensors_it_measures_flags_and_never_hangs() {
         assert!(sample.time_us > last_us, "time runs forward");
         last_us = sample.time_us;
     }
+}
+
+#[test]
+fn where_the_flash_is_a_rom_it_says_so_and_runs_from_ram() {
+    let mut link = started(example::SERIAL.as_bytes(), &example::blob_bytes());
+    assert_eq!(link.storage().expect("an answer").source, Source::Factory);
+    let other = Blob { provenance: *b"exampl-2", ..example::blob() };
+    assert_eq!(link.upload_blob(&other).expect("the example is sound"), Kept::UntilPowerOff);
+    assert_eq!(link.storage().expect("an answer").source, Source::UntilPowerOff);
+    assert_eq!(link.read_calibration().expect("an answer"), example::stored(&other));
+    link.roll_back().expect("to the stored one");
+    assert_eq!(link.read_calibration().expect("an answer"), example::blob_bytes());
+    assert!(matches!(link.roll_back(), Err(LinkError::Refused(Refusal::NothingBefore))));
+}
+
+#[test]
+fn it_streams_at_its_own_pace_until_it_is_stopped() {
+    let mut link = started(example::SERIAL.as_bytes(), &example::blob_bytes());
+    link.stream(Streamed::Samples, 200).expect("an answer");
+    let mut last_us = None;
+    for number in 0..5 {
+        let message = link.next_unasked().expect("a line").expect("a message");
+        assert_eq!(message.number, number);
+        let Content::Sample(sample) = message.content else { panic!("{message:?}") };
+        // Without sensors, each waits half a period for news of them, as it must.
+        let passed_us = last_us.map(|last_us| sample.time_us - last_us);
+        assert!(passed_us.is_none_or(|passed_us| passed_us >= 100_000), "{passed_us:?}");
+        last_us = Some(sample.time_us);
+    }
+    link.stop().expect("an answer");
+    assert_eq!(link.identify().expect("an answer").serial, example::SERIAL);
 }
 
 #[test]

@@ -86,9 +86,12 @@ impl<SPI: SpiDevice, I2C: I2c, F: NorFlash> Instrument<SPI, I2C, F> {
 
     /// What a stream has to say at this time, unasked.
     pub fn poll(&mut self, time_us: u64) -> Option<&[u8]> {
-        let stream = self.stream.as_mut()?;
-        let (what, sequence, number) = (stream.what, stream.sequence, stream.due(time_us)?);
+        let stream = self.stream.as_mut().filter(|stream| stream.is_due(time_us))?;
         let sample = self.sensors.sample(time_us);
+        if sample.faults.contains(Status::STALE) && stream.waits(time_us) {
+            return None;
+        }
+        let (what, sequence, number) = (stream.what, stream.sequence, stream.take(time_us));
         let reading = self.compensate(&sample);
         let body = match what {
             Streamed::Readings => Response::StreamedReading { number, reading },

@@ -1,4 +1,7 @@
 //! Measuring at a period, unasked.
+//!
+//! The counter's gate and the period are two clocks. A stream waits for a gate that closes a little later, up to half a
+//! period, and goes on from there; without that the two would pass each other now and then and leave a hole.
 
 use protocol::{Refusal, Streamed};
 
@@ -14,6 +17,7 @@ pub struct Stream {
     pub sequence: u16,
     period_us: u64,
     last_us: u64,
+    waited: bool,
     number: u32,
 }
 
@@ -27,22 +31,33 @@ impl Stream {
             return Err(Refusal::Period { shortest_ms: SHORTEST_MS, longest_ms: LONGEST_MS });
         }
         let period_us = u64::from(period_ms) * 1000;
-        Ok(Self { what, sequence, period_us, last_us: time_us.wrapping_sub(period_us), number: 0 })
+        Ok(Self { what, sequence, period_us, last_us: time_us.wrapping_sub(period_us), waited: false, number: 0 })
     }
 
-    /// The number of the message that is due now, if one is. Falling behind skips messages; they never pile up.
-    pub fn due(&mut self, time_us: u64) -> Option<u32> {
-        let passed_us = time_us.wrapping_sub(self.last_us);
-        // A clock that was set back makes the difference huge: due, and in step again.
-        if passed_us < self.period_us {
-            return None;
-        }
-        // On the grid of the period, unless that is out of reach.
-        let next_us = self.last_us.wrapping_add(self.period_us);
-        self.last_us = if passed_us < 2 * self.period_us { next_us } else { time_us };
+    /// Whether a message is due. A clock that was set back makes the time passed huge: due, and in step again.
+    pub const fn is_due(&self, time_us: u64) -> bool {
+        self.passed_us(time_us) >= self.period_us
+    }
+
+    /// Whether to wait a little longer for sensors that have nothing new.
+    pub const fn waits(&mut self, time_us: u64) -> bool {
+        self.waited = self.passed_us(time_us) < self.period_us + self.period_us / 2;
+        self.waited
+    }
+
+    /// The number of the message that goes out now. Falling behind skips messages; they never pile up.
+    pub const fn take(&mut self, time_us: u64) -> u32 {
+        // On the grid of the period, unless that is out of reach or the sensors have a grid of their own.
+        let keeps_step = self.passed_us(time_us) < 2 * self.period_us && !self.waited;
+        self.last_us = if keeps_step { self.last_us.wrapping_add(self.period_us) } else { time_us };
+        self.waited = false;
         let number = self.number;
         self.number = self.number.wrapping_add(1);
-        Some(number)
+        number
+    }
+
+    const fn passed_us(&self, time_us: u64) -> u64 {
+        time_us.wrapping_sub(self.last_us)
     }
 }
 
@@ -54,17 +69,34 @@ mod tests {
         Stream::new(Streamed::Readings, period_ms, 1, 5).expect("a period within limits")
     }
 
+    fn due(stream: &mut Stream, time_us: u64) -> Option<u32> {
+        stream.is_due(time_us).then(|| stream.take(time_us))
+    }
+
+    #[test]
+    fn it_waits_half_a_period_for_the_sensors_and_goes_on_in_their_step() {
+        let mut stream = stream(10);
+        assert_eq!(due(&mut stream, 5), Some(0));
+        assert!(stream.is_due(10_005) && stream.waits(10_005));
+        assert!(stream.is_due(12_000) && stream.waits(12_000));
+        assert_eq!(due(&mut stream, 13_000), Some(1));
+        assert_eq!(due(&mut stream, 22_999), None);
+        assert!(stream.is_due(23_000) && stream.waits(27_999) && !stream.waits(28_000));
+        assert_eq!(due(&mut stream, 28_000), Some(2));
+        assert_eq!(due(&mut stream, 33_000), Some(3), "without having waited, the grid holds");
+    }
+
     #[test]
     fn it_is_due_at_once_and_then_once_a_period() {
         let mut stream = stream(10);
-        let due = [5, 6, 10_004, 10_005, 10_006, 20_100, 30_004, 30_005].map(|time_us| stream.due(time_us));
+        let due = [5, 6, 10_004, 10_005, 10_006, 20_100, 30_004, 30_005].map(|time_us| due(&mut stream, time_us));
         assert_eq!(due, [Some(0), None, None, Some(1), None, Some(2), None, Some(3)]);
     }
 
     #[test]
     fn it_catches_up_without_a_burst_and_survives_a_clock_that_jumps() {
         let mut stream = stream(10);
-        let due = [5, 95_000, 95_001, 105_000, 3, 4, 10_003].map(|time_us| stream.due(time_us));
+        let due = [5, 95_000, 95_001, 105_000, 3, 4, 10_003].map(|time_us| due(&mut stream, time_us));
         assert_eq!(due, [Some(0), Some(1), None, Some(2), Some(3), None, Some(4)]);
     }
 

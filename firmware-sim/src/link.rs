@@ -147,6 +147,11 @@ impl<T: Transport> Link<T> {
         &mut self.transport
     }
 
+    /// The line, at the end of the conversation.
+    pub fn into_transport(self) -> T {
+        self.transport
+    }
+
     /// Asks and returns the answer, repeating what gets none. A refusal is an answer.
     ///
     /// # Errors

@@ -14,6 +14,9 @@ use tempfile::TempDir;
 const LOOKS: usize = 600;
 const LOOK: Duration = Duration::from_millis(50);
 
+/// More bytes than a slot uses.
+const ERASED: usize = 2048;
+
 /// A running microcontroller; dropping it switches it off.
 pub struct Microcontroller {
     emulator: Child,
@@ -42,7 +45,9 @@ impl Microcontroller {
             .arg(image());
         for (region, bytes) in [("IDENTITY", identity), ("CALIBRATION", calibration)] {
             if !bytes.is_empty() {
-                command.args(["-device", &loader(&folder.path().join(region), bytes, &origin(region))]);
+                // QEMU's flash is zero where nobody wrote; a programmer leaves it erased.
+                let erased = bytes.iter().copied().chain(std::iter::repeat(0xFF)).take(ERASED).collect::<Vec<_>>();
+                command.args(["-device", &loader(&folder.path().join(region), &erased, &origin(region))]);
             }
         }
         let mut emulator = command.stdin(Stdio::null()).spawn().unwrap_or_else(|error| {
