@@ -85,16 +85,38 @@ pub mod systick {
     pub const CVR: Register = Register(0xE000_E018);
 }
 
-/// The timer that ends sleeps while a stream is under way.
+/// The timer that ends a sleep. It runs once: QEMU's fires without end otherwise.
 mod tim2 {
-    use super::Register;
+    use super::{CLOCK_HZ, Register};
 
     const BASE: u32 = 0x4000_0000;
-    pub const CR1: Register = Register(BASE);
-    pub const DIER: Register = Register(BASE + 0x0C);
-    pub const SR: Register = Register(BASE + 0x10);
-    pub const PSC: Register = Register(BASE + 0x28);
-    pub const ARR: Register = Register(BASE + 0x2C);
+    const CR1: Register = Register(BASE);
+    const DIER: Register = Register(BASE + 0x0C);
+    const SR: Register = Register(BASE + 0x10);
+    const EGR: Register = Register(BASE + 0x14);
+    const PSC: Register = Register(BASE + 0x28);
+    const ARR: Register = Register(BASE + 0x2C);
+
+    const RUN: u32 = 1 << 0;
+    /// Only the end of the time is an event, not the update that begins it.
+    const END_ONLY: u32 = 1 << 2;
+    const ONCE: u32 = 1 << 3;
+
+    /// Lets the interrupt become pending after this time.
+    pub fn start(after_us: u32) {
+        PSC.write(CLOCK_HZ / 1_000_000 - 1);
+        ARR.write(after_us);
+        DIER.write(1);
+        CR1.write(END_ONLY);
+        EGR.write(1);
+        CR1.write(END_ONLY | ONCE | RUN);
+    }
+
+    /// Whatever it was doing, it is over.
+    pub fn stop() {
+        CR1.write(0);
+        SR.write(0);
+    }
 }
 
 /// What erases and writes the flash.
@@ -238,25 +260,14 @@ impl Board {
     }
 }
 
-/// From now on a sleep ends at the latest after `every_us`, or else when something happens.
-pub fn wake_every(every_us: Option<u32>) {
-    const MILLISECOND: u32 = CLOCK_HZ / 1000;
-    const RUN: u32 = 1;
-    const INTERRUPT: u32 = 1;
-    let Some(every_us) = every_us else { return tim2::CR1.write(0) };
-    if tim2::CR1.read() & RUN == 0 {
-        tim2::PSC.write(MILLISECOND - 1);
-        tim2::DIER.write(INTERRUPT);
-        tim2::CR1.write(RUN);
-        tim2::ARR.write(every_us / 1000 - 1);
+/// Sleeps until a byte arrived, the clock turned or `longest_us` went by; returns at once if one of them already happened.
+pub fn sleep(longest_us: Option<u32>) {
+    if let Some(longest_us) = longest_us {
+        tim2::start(longest_us);
     }
-}
-
-/// Sleeps until a byte arrived, the clock turned or the time to wake came; returns at once if one of them already happened.
-pub fn sleep() {
     // SAFETY: waiting for an interrupt touches no memory.
     unsafe { asm!("wfi", options(nomem, nostack, preserves_flags)) };
-    tim2::SR.write(0);
+    tim2::stop();
     NVIC_ICPR0.write(TIM2_INTERRUPT);
     NVIC_ICPR1.write(USART1_INTERRUPT);
     SCB_ICSR.write(ICSR_CLEAR_SYSTICK);

@@ -35,10 +35,7 @@ fn main() -> ! {
                     line.send(answer);
                 }
             }
-            None => {
-                board::wake_every(instrument.wake_every_us());
-                board::sleep();
-            }
+            None => board::sleep(instrument.wake_every_us()),
         }
     }
 }
