@@ -126,7 +126,7 @@ impl<SPI: SpiDevice, I2C: I2c, F: NorFlash> Instrument<SPI, I2C, F> {
             Request::Stop => self.stream = None,
             Request::ReadBlob { offset } => return self.calibrations.piece(offset),
             Request::ReadStorage => return Ok(Response::Storage(self.calibrations.state())),
-            Request::Challenge => return Ok(Response::Challenge { nonce: self.lock.challenge(time_us) }),
+            Request::Challenge => return Ok(Response::Nonce { nonce: self.lock.challenge(time_us) }),
             Request::Unlock { answer } => {
                 self.lock.answer(answer, &self.calibrations.identity().serial, time_us)?;
                 self.calibrations.forget();

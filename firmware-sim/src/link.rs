@@ -236,7 +236,7 @@ impl<T: Transport> Link<T> {
     pub fn unlock(&mut self) -> Result<(), LinkError<T::Error>> {
         let serial = self.identify()?.serial;
         let nonce = match self.exchange(Request::Challenge)? {
-            Response::Challenge { nonce } => nonce,
+            Response::Nonce { nonce } => nonce,
             other => return Err(wrong(&other)),
         };
         self.command(Request::Unlock { answer: unlock_answer(nonce, &serial) })
@@ -435,7 +435,7 @@ fn wrong<E>(response: &Response) -> LinkError<E> {
         Response::Done => LinkError::Unexpected("that it is done"),
         Response::Piece { .. } => LinkError::Unexpected("with a piece of its calibration"),
         Response::Storage(_) => LinkError::Unexpected("with what it stores"),
-        Response::Challenge { .. } => LinkError::Unexpected("with a challenge"),
+        Response::Nonce { .. } => LinkError::Unexpected("with a challenge"),
         Response::UntilPowerOff => LinkError::Unexpected("that it could not store a calibration"),
         Response::StreamedReading { .. } | Response::StreamedSample { .. } => LinkError::Unexpected("with a stream"),
         _ => LinkError::UnknownAnswer,

@@ -113,7 +113,7 @@ pub enum Response {
     /// To [`Request::ReadStorage`].
     Storage(StorageState),
     /// To [`Request::Challenge`].
-    Challenge {
+    Nonce {
         /// What the answer is to be computed from.
         nonce: u64,
     },
