@@ -3,10 +3,11 @@
 //! QEMU's netduinoplus2 is an STM32F405 without the sensors, so samples are replayed and live
 //! measuring must end in flags.
 
-use firmware_core::Compensator;
+use ed25519_compact::{KeyPair, Seed};
+use firmware_core::{Compensator, FactoryKey, IdentityRecord};
 use firmware_sim::link::{Content, Kept, Link, LinkError};
 use firmware_sim::virtual_faulty_line::{FaultyLine, LineFaults};
-use protocol::{Blob, Reading, Refusal, Sample, Source, Status, Streamed};
+use protocol::{Blob, Reading, Refusal, Sample, Signed, Source, Status, Streamed};
 use std::time::Duration;
 use tests::example;
 use tests::qemu::Microcontroller;
@@ -114,6 +115,24 @@ fn it_streams_at_its_own_pace_until_it_is_stopped() {
     }
     link.stop().expect("an answer");
     assert_eq!(link.identify().expect("an answer").serial, example::SERIAL);
+}
+
+#[test]
+fn with_the_factorys_key_each_image_takes_what_it_can_vouch_for() {
+    let factory = KeyPair::from_seed(Seed::new([1; 32]));
+    let key = FactoryKey::Asked(*factory.pk);
+    let identity = IdentityRecord { key, ..IdentityRecord::new(example::SERIAL) }.to_bytes();
+    let blob = example::blob_bytes();
+    let signed = [&blob[..], &Signed::trailer(&factory.sk.sign(&blob, None))].concat();
+    let unsigned = |result| matches!(result, Err(LinkError::Refused(Refusal::Unsigned)));
+    let mut link = Link::new(Microcontroller::start_with_signatures(&identity, PATIENCE));
+    assert!(unsigned(link.upload(&blob)));
+    assert_eq!(link.upload(&signed).expect("signed"), Kept::UntilPowerOff);
+    assert_eq!(link.read_calibration().expect("an answer"), signed);
+    // The image that can't check signatures vouches for none.
+    let mut link = started(&identity, &blob);
+    assert_eq!(link.state().expect("an answer").provenance, None);
+    assert!(unsigned(link.upload(&signed)));
 }
 
 #[test]

@@ -72,7 +72,7 @@ fn factory_key(record: &[u8; IDENTITY - KEY_AT]) -> FactoryKey {
     if record.iter().all(|byte| *byte == 0xFF) || record.iter().all(|byte| *byte == 0) {
         return FactoryKey::NotAsked;
     }
-    let intact = record.split_last_chunk::<4>().filter(|(key, sum)| crc32(*key) == u32::from_le_bytes(**sum));
+    let intact = record.split_last_chunk::<4>().filter(|(key, sum)| crc32(key) == u32::from_le_bytes(**sum));
     let key = intact.and_then(|(key, _)| key.strip_prefix(&MARK)).and_then(|key| key.first_chunk::<32>());
     key.map_or(FactoryKey::Spoilt, |key| FactoryKey::Asked(*key))
 }

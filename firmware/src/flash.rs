@@ -111,7 +111,7 @@ fn unlocked(act: impl FnOnce() -> Result<(), FlashError>) -> Result<(), FlashErr
     finished().ok();
     SR.write(FLAGS);
     if CR.read() & LOCK != 0 {
-        KEYS.map(|key| KEYR.write(key));
+        KEYS.iter().for_each(|key| KEYR.write(*key));
     }
     // What the data cache holds of the sectors is no longer true afterwards.
     let cache = ACR.read() & DATA_CACHE;
