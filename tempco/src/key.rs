@@ -1,7 +1,7 @@
 //! The factory's keys, as files of one line of hexadecimal digits.
 
 use crate::failure::Failure;
-use ed25519_compact::{KeyPair, PublicKey, Seed};
+use ed25519_compact::{KeyPair, Seed};
 use protocol::Signed;
 use std::fmt::Write;
 use std::fs::OpenOptions;
@@ -61,13 +61,6 @@ pub fn write_public(path: &Path, key: &[u8; 32]) -> Result<(), Failure> {
 /// Reads a public key.
 pub fn read_public(path: &Path) -> Result<[u8; 32], Failure> {
     read(path)
-}
-
-/// Whether this key signed what stands before the signature; `None` if nobody did.
-pub fn is_signed_by(bytes: &[u8], key: &[u8; 32]) -> Option<bool> {
-    let signed = Signed::split(bytes)?;
-    let signature = ed25519_compact::Signature::new(*signed.signature?);
-    Some(PublicKey::new(*key).verify(signed.blob, &signature).is_ok())
 }
 
 fn read(path: &Path) -> Result<[u8; 32], Failure> {

@@ -19,7 +19,6 @@ pub enum Listener {
     Terminal {
         master: Box<serialport::TTYPort>,
         name: String,
-        _kept_open: Box<serialport::TTYPort>,
     },
 }
 
@@ -36,12 +35,11 @@ impl Listener {
     #[cfg(unix)]
     pub fn terminal() -> Result<Self, Failure> {
         use serialport::SerialPort;
-        let (mut master, mut slave) = serialport::TTYPort::pair().map_err(Failure::new)?;
-        let name = slave.name().unwrap_or_default();
-        // The far end is opened by others too, and stays while nobody has it open.
-        slave.set_exclusive(false).map_err(Failure::new)?;
+        // The far end is closed again: whoever opens it as a serial port wants it for himself.
+        let (mut master, far_end) = serialport::TTYPort::pair().map_err(Failure::new)?;
+        let name = far_end.name().unwrap_or_default();
         master.set_timeout(NAP).map_err(Failure::new)?;
-        Ok(Self::Terminal { master: Box::new(master), name, _kept_open: Box::new(slave) })
+        Ok(Self::Terminal { master: Box::new(master), name })
     }
 
     #[cfg(not(unix))]
@@ -106,6 +104,7 @@ impl Listener {
     fn hang_up(&mut self) {
         match self {
             Self::Socket { client, .. } => *client = None,
+            // Nobody has it open; it stays until somebody does.
             #[cfg(unix)]
             Self::Terminal { .. } => std::thread::sleep(NAP),
         }
