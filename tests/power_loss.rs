@@ -207,7 +207,7 @@ fn a_step_back_lasts_and_there_is_one_step_only() {
     assert_eq!(link.read_calibration(), Ok(calibration(1)));
     assert_eq!(link.roll_back(), Err(LinkError::Refused(Refusal::NothingBefore)));
     assert_eq!(link.upload(&calibration(3)), Ok(Kept::ForGood));
-    assert_eq!(link.storage().expect("a perfect line").can_roll_back, true);
+    assert!(link.storage().expect("a perfect line").can_roll_back);
 }
 
 #[test]
