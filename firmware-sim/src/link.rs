@@ -4,85 +4,19 @@
 //! a [`Transport`] has an instrument. It knows sequence numbers, repetition and pieces, nothing of
 //! what a calibration means. It needs no clock: a transport gives up waiting by itself.
 
-use protocol::limits::{MAX_BLOB, MAX_CHUNK, MAX_STORED};
+mod error;
+mod transport;
+
+pub use error::LinkError;
+pub use transport::Transport;
+
+use error::wrong;
+use protocol::limits::{MAX_BLOB, MAX_CHUNK};
 use protocol::{
     Blob, Decoder, Envelope, FrameError, Identity, InstrumentState, Reading, Refusal, Request, Response, Sample,
     StorageState, Streamed, encode_request, unlock_answer,
 };
 use std::collections::VecDeque;
-use std::convert::Infallible;
-use thiserror::Error;
-
-/// A line that carries bytes both ways and may lose them.
-pub trait Transport {
-    /// What this kind of line fails with, beyond repair by repetition.
-    type Error: std::error::Error + 'static;
-
-    /// Sends bytes.
-    ///
-    /// # Errors
-    /// If the line is gone.
-    fn send(&mut self, bytes: &[u8]) -> Result<(), Self::Error>;
-
-    /// The next byte; `None` once nothing came for as long as this line's patience lasts.
-    ///
-    /// # Errors
-    /// If the line is gone.
-    fn receive(&mut self) -> Result<Option<u8>, Self::Error>;
-}
-
-impl<T: Transport + ?Sized> Transport for &mut T {
-    type Error = T::Error;
-
-    fn send(&mut self, bytes: &[u8]) -> Result<(), Self::Error> {
-        (**self).send(bytes)
-    }
-
-    fn receive(&mut self) -> Result<Option<u8>, Self::Error> {
-        (**self).receive()
-    }
-}
-
-impl<T: Transport + ?Sized> Transport for Box<T> {
-    type Error = T::Error;
-
-    fn send(&mut self, bytes: &[u8]) -> Result<(), Self::Error> {
-        (**self).send(bytes)
-    }
-
-    fn receive(&mut self) -> Result<Option<u8>, Self::Error> {
-        (**self).receive()
-    }
-}
-
-/// Why a request got no useful answer.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum LinkError<E = Infallible> {
-    /// The line is gone.
-    #[error("the line failed: {0}")]
-    Line(#[source] E),
-    /// Nobody answered.
-    #[error("no answer after {tries} tries; is the instrument connected and powered?")]
-    NoAnswer {
-        /// How often the request was sent.
-        tries: u32,
-    },
-    /// The instrument will not do it.
-    #[error("the instrument refused: {0}")]
-    Refused(Refusal),
-    /// The instrument answered another question.
-    #[error("the instrument answered {0}, which does not belong to the request")]
-    Unexpected(&'static str),
-    /// The answer is sound and its kind is not known here.
-    #[error("the instrument answered with a message that this version doesn't know; update this program")]
-    UnknownAnswer,
-    /// The request does not fit a frame.
-    #[error("the request can't be sent: {0}")]
-    Request(#[source] FrameError),
-    /// The calibration is longer than a device stores.
-    #[error("the calibration is longer than the {MAX_STORED} bytes that a device stores")]
-    TooLong,
-}
 
 /// For how long a calibration that was taken is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -421,23 +355,5 @@ impl<T: Transport> Link<T> {
         }
         self.decoder = Decoder::new();
         Ok(None)
-    }
-}
-
-/// The error that an answer amounts to where another was expected.
-fn wrong<E>(response: &Response) -> LinkError<E> {
-    match response {
-        Response::Refused(refusal) => LinkError::Refused(*refusal),
-        Response::Identity(_) => LinkError::Unexpected("with its identity"),
-        Response::State(_) => LinkError::Unexpected("with its state"),
-        Response::Measured { .. } => LinkError::Unexpected("with a measurement"),
-        Response::Reading(_) => LinkError::Unexpected("with a reading"),
-        Response::Done => LinkError::Unexpected("that it is done"),
-        Response::Piece { .. } => LinkError::Unexpected("with a piece of its calibration"),
-        Response::Storage(_) => LinkError::Unexpected("with what it stores"),
-        Response::Nonce { .. } => LinkError::Unexpected("with a challenge"),
-        Response::UntilPowerOff => LinkError::Unexpected("that it could not store a calibration"),
-        Response::StreamedReading { .. } | Response::StreamedSample { .. } => LinkError::Unexpected("with a stream"),
-        _ => LinkError::UnknownAnswer,
     }
 }
