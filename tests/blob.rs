@@ -2,7 +2,7 @@
 
 use firmware_core::program::ProgramError;
 use firmware_core::{Compensator, LoadError};
-use firmware_sim::link::LinkError;
+use firmware_sim::link::{Kept, LinkError};
 use firmware_sim::virtual_instrument::VirtualInstrument;
 use protocol::limits::MAX_BLOB;
 use protocol::{Blob, BlobError, Reading, Refusal, Sample, Term, Weights, crc32};
@@ -56,7 +56,7 @@ impl Bench {
         Self { instrument, samples, readings }
     }
 
-    fn upload(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+    fn upload(&mut self, bytes: &[u8]) -> Result<Kept, LinkError> {
         self.instrument.link_mut().upload(bytes)
     }
 
@@ -146,7 +146,7 @@ fn a_blob_for_another_sensor_is_refused_and_one_for_any_sensor_is_not() {
     assert_eq!(bench.instrument.upload(&blob), Err(LinkError::Refused(Refusal::OtherSerial)));
     bench.assert_the_old_calibration_runs_on();
     blob.serial.clear();
-    assert_eq!(bench.instrument.upload(&blob), Ok(()));
+    assert_eq!(bench.instrument.upload(&blob), Ok(Kept::ForGood));
     bench.assert_the_old_calibration_runs_on();
 }
 

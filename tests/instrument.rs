@@ -44,21 +44,6 @@ fn readings_over_the_line_are_the_hosts_bit_for_bit() {
 }
 
 #[test]
-fn a_bad_line_changes_no_bit_and_repeats_no_step() {
-    let faults = LineFaults { flip_ppm: 1000, loss_ppm: 1000, duplication_ppm: 1000 };
-    let samples = example::samples(500);
-    for seed in 0..4 {
-        let line = FaultyLine::new(VirtualLine::new(example::SERIAL), faults, seed);
-        let mut link = Link::new(line).with_tries(50);
-        link.upload_blob(&example::blob()).expect("repetition gets it through");
-        let readings: Vec<_> =
-            samples.iter().map(|sample| link.replay(sample).expect("repetition gets it through")).collect();
-        assert_same_bits(&samples, &on_the_host(&samples), &readings);
-        assert_eq!(link.state().expect("repetition gets it through").readings, samples.len() as u32);
-    }
-}
-
-#[test]
 fn the_readings_have_the_recorded_bits() {
     let samples = example::samples(2000);
     let lines: Vec<String> = on_the_host(&samples)
@@ -122,55 +107,6 @@ fn a_live_measurement_is_the_compensation_of_what_the_drivers_read() {
     }
 }
 
-/// Lets one thing fail.
-type Break = fn(&mut VirtualInstrument);
-
-#[test]
-fn every_sensor_fault_is_a_flag_and_never_a_number() {
-    const THERMOMETER: Status = Status::THERMOMETER_FAULT;
-    const RESONATOR: Status = Status::RESONATOR_FAULT;
-    let table: [(&str, Break, Status); 16] = [
-        ("no thermometer", |i| i.thermometer_mut().fault = PartFault::Absent, THERMOMETER),
-        ("its bus fails at once", |i| i.thermometer_mut().fault = PartFault::BusFailsAfter(0), THERMOMETER),
-        ("its bus fails in the middle", |i| i.thermometer_mut().fault = PartFault::BusFailsAfter(3), THERMOMETER),
-        ("not converted yet", |i| i.thermometer_mut().force_register(0x8000), THERMOMETER | Status::STALE),
-        ("too cold to be true", |i| i.thermometer_mut().force_register(0x8001), THERMOMETER),
-        ("too hot to be true", |i| i.thermometer_mut().force_register(0x7FFF), THERMOMETER),
-        ("no counter", |i| i.counter_mut().fault = PartFault::Absent, RESONATOR),
-        ("its bus fails at once", |i| i.counter_mut().fault = PartFault::BusFailsAfter(0), RESONATOR),
-        ("its bus fails at the last byte", |i| i.counter_mut().fault = PartFault::BusFailsAfter(18), RESONATOR),
-        ("the same gate twice", |i| drop(i.measure()), RESONATOR | Status::STALE),
-        ("gate open since power-on", |i| i.counter_mut().store(2, &[0, 0]), RESONATOR | Status::STALE),
-        ("resonator 1 stands still", |i| i.counter_mut().finish_gate(0, 41_000_000_000), RESONATOR),
-        ("resonator 2 stands still", |i| i.counter_mut().finish_gate(41_000_000_000, 0), RESONATOR),
-        ("counter 1 overflows", |i| i.counter_mut().finish_gate(1, 41_000_000_000), RESONATOR),
-        ("counter 2 overflows", |i| i.counter_mut().finish_gate(41_000_000_000, 1), RESONATOR),
-        ("more cycles than ticks", |i| i.counter_mut().store(8, &[0, 0, 0, 0]), RESONATOR),
-    ];
-    for (what, fail, expected) in table {
-        let mut instrument = calibrated();
-        instrument.set(F1_HZ, F2_HZ, ROOM_C);
-        fail(&mut instrument);
-        let (sample, reading) = instrument.measure().expect("a perfect line");
-        assert_eq!((sample.faults, reading.status), (expected, expected), "{what}");
-        assert_eq!(reading.acceleration_g.to_bits(), Reading::NO_NUMBER.to_bits(), "{what}");
-    }
-}
-
-#[test]
-fn a_bus_that_fails_at_any_byte_is_a_fault_and_one_that_holds_is_not() {
-    // Address and register, then address again is not modelled: 1 + 1 + 2 bytes on I²C, 1 + 18 on SPI.
-    for bytes in 0..=25 {
-        let mut instrument = calibrated();
-        instrument.set(F1_HZ, F2_HZ, ROOM_C);
-        instrument.thermometer_mut().fault = PartFault::BusFailsAfter(bytes);
-        instrument.counter_mut().fault = PartFault::BusFailsAfter(bytes);
-        let (sample, _) = instrument.measure().expect("a perfect line");
-        assert_eq!(sample.faults.contains(Status::THERMOMETER_FAULT), bytes < 4, "after {bytes} bytes");
-        assert_eq!(sample.faults.contains(Status::RESONATOR_FAULT), bytes < 19, "after {bytes} bytes");
-    }
-}
-
 proptest! {
     #[test]
     fn frequencies_are_what_the_registers_say_rounded_once(
@@ -201,7 +137,7 @@ fn every_value_of_the_temperature_register_is_its_temperature_or_a_fault() {
         thermometer.bus_mut().force_register(bits);
         let steps = bits.cast_signed();
         let temperature_c = f64::from(steps) * 0.007_812_5;
-        match thermometer.temperature_uc() {
+        match thermometer.temperature_uc(0) {
             Ok(found_uc) => {
                 assert!((-60.0..=155.0).contains(&temperature_c));
                 assert!((f64::from(found_uc) - temperature_c * 1e6).abs() <= 0.5);
@@ -222,19 +158,6 @@ fn a_part_that_is_another_one_is_named() {
     assert_eq!(Thermometer::new(thermometer, 0x48).check(), Err(ThermometerError::WrongPart(0x0190)));
     assert_eq!(Counter::new(VirtualCounter::new(1, 1), 1).check(), Ok(()));
     assert_eq!(Thermometer::new(VirtualThermometer::new(0x48), 0x48).check(), Ok(()));
-}
-
-#[test]
-fn measuring_goes_on_after_a_fault() {
-    let mut instrument = calibrated();
-    instrument.set(F1_HZ, F2_HZ, ROOM_C);
-    instrument.counter_mut().fault = PartFault::Absent;
-    assert!(instrument.measure().expect("a perfect line").1.status.contains(Status::RESONATOR_FAULT));
-    instrument.counter_mut().fault = PartFault::None;
-    let (_, reading) = instrument.measure().expect("a perfect line");
-    assert!(reading.acceleration_g.is_finite() && !reading.status.intersects(Status::FATAL));
-    let state = instrument.link_mut().state().expect("a perfect line");
-    assert!(state.raised.contains(Status::RESONATOR_FAULT), "the flag stays on record");
 }
 
 #[test]

@@ -3,10 +3,11 @@
 //! QEMU's netduinoplus2 is an STM32F405 without the sensors, so samples are replayed and live
 //! measuring must end in flags.
 
-use firmware_core::Compensator;
-use firmware_sim::link::Link;
+use ed25519_compact::{KeyPair, Seed};
+use firmware_core::{Compensator, FactoryKey, IdentityRecord};
+use firmware_sim::link::{Content, Kept, Link, LinkError};
 use firmware_sim::virtual_faulty_line::{FaultyLine, LineFaults};
-use protocol::{Blob, Reading, Sample, Status};
+use protocol::{Blob, Reading, Refusal, Sample, Signed, Source, Status, Streamed};
 use std::time::Duration;
 use tests::example;
 use tests::qemu::Microcontroller;
@@ -86,8 +87,57 @@ fn without_sensors_it_measures_flags_and_never_hangs() {
 }
 
 #[test]
+fn where_the_flash_is_a_rom_it_says_so_and_runs_from_ram() {
+    let mut link = started(example::SERIAL.as_bytes(), &example::blob_bytes());
+    assert_eq!(link.storage().expect("an answer").source, Source::Factory);
+    let other = Blob { provenance: *b"exampl-2", ..example::blob() };
+    assert_eq!(link.upload_blob(&other).expect("the example is sound"), Kept::UntilPowerOff);
+    assert_eq!(link.storage().expect("an answer").source, Source::UntilPowerOff);
+    assert_eq!(link.read_calibration().expect("an answer"), example::stored(&other));
+    link.roll_back().expect("to the stored one");
+    assert_eq!(link.read_calibration().expect("an answer"), example::blob_bytes());
+    assert!(matches!(link.roll_back(), Err(LinkError::Refused(Refusal::NothingBefore))));
+}
+
+#[test]
+fn it_streams_at_its_own_pace_until_it_is_stopped() {
+    let mut link = started(example::SERIAL.as_bytes(), &example::blob_bytes());
+    link.stream(Streamed::Samples, 200).expect("an answer");
+    let mut last_us = None;
+    for number in 0..5 {
+        let message = link.next_unasked().expect("a line").expect("a message");
+        assert_eq!(message.number, number);
+        let Content::Sample(sample) = message.content else { panic!("{message:?}") };
+        // Without sensors, each waits half a period for news of them, as it must.
+        let passed_us = last_us.map(|last_us| sample.time_us - last_us);
+        assert!(passed_us.is_none_or(|passed_us| passed_us >= 100_000), "{passed_us:?}");
+        last_us = Some(sample.time_us);
+    }
+    link.stop().expect("an answer");
+    assert_eq!(link.identify().expect("an answer").serial, example::SERIAL);
+}
+
+#[test]
+fn with_the_factorys_key_each_image_takes_what_it_can_vouch_for() {
+    let factory = KeyPair::from_seed(Seed::new([1; 32]));
+    let key = FactoryKey::Asked(*factory.pk);
+    let identity = IdentityRecord { key, ..IdentityRecord::new(example::SERIAL) }.to_bytes();
+    let blob = example::blob_bytes();
+    let signed = [&blob[..], &Signed::trailer(&factory.sk.sign(&blob, None))].concat();
+    let unsigned = |result| matches!(result, Err(LinkError::Refused(Refusal::Unsigned)));
+    let mut link = Link::new(Microcontroller::start_with_signatures(&identity, PATIENCE));
+    assert!(unsigned(link.upload(&blob)));
+    assert_eq!(link.upload(&signed).expect("signed"), Kept::UntilPowerOff);
+    assert_eq!(link.read_calibration().expect("an answer"), signed);
+    // The image that can't check signatures vouches for none.
+    let mut link = started(&identity, &blob);
+    assert_eq!(link.state().expect("an answer").provenance, None);
+    assert!(unsigned(link.upload(&signed)));
+}
+
+#[test]
 fn a_bad_line_to_the_microcontroller_changes_no_bit() {
-    let faults = LineFaults { flip_ppm: 300, loss_ppm: 300, duplication_ppm: 300 };
+    let faults = LineFaults::each(300);
     let microcontroller = Microcontroller::start(example::SERIAL.as_bytes(), &[], Duration::from_millis(100));
     let mut link = Link::new(FaultyLine::new(microcontroller, faults, 1)).with_tries(100);
     link.upload_blob(&example::blob()).expect("repetition gets it through");

@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use protocol::limits::{MAX_CHUNK, MAX_FRAME, MAX_LINE};
 use protocol::{
-    Decoder, Envelope, FrameError, Identity, InstrumentState, Reading, Refusal, Request, Response, Sample, Status,
-    crc32, encode_frame, encode_request, encode_response,
+    Decoder, Envelope, FrameError, Identity, InstrumentState, Reading, Refusal, Request, Response, Sample, Source,
+    Status, StorageState, Streamed, crc32, encode_frame, encode_request, encode_response,
 };
 use serde::{Serialize, de::DeserializeOwned};
 
@@ -69,6 +69,10 @@ prop_compose! {
     }
 }
 
+fn any_streamed() -> impl Strategy<Value = Streamed> {
+    prop_oneof![Just(Streamed::Readings), Just(Streamed::Samples)]
+}
+
 fn any_request() -> impl Strategy<Value = Request> {
     let bytes = proptest::collection::vec(any::<u8>(), 0..=MAX_CHUNK);
     prop_oneof![
@@ -80,6 +84,13 @@ fn any_request() -> impl Strategy<Value = Request> {
         (any::<u16>(), bytes)
             .prop_map(|(offset, bytes)| Request::WriteBlob { offset, bytes: bytes.into_iter().collect() }),
         any::<u16>().prop_map(|length| Request::CommitBlob { length }),
+        any::<u16>().prop_map(|offset| Request::ReadBlob { offset }),
+        Just(Request::ReadStorage),
+        Just(Request::Challenge),
+        any::<u32>().prop_map(|answer| Request::Unlock { answer }),
+        Just(Request::RollBack),
+        (any_streamed(), any::<u32>()).prop_map(|(what, period_ms)| Request::Stream { what, period_ms }),
+        Just(Request::Stop),
     ]
 }
 
@@ -93,7 +104,28 @@ fn any_refusal() -> impl Strategy<Value = Refusal> {
         Just(Refusal::Unusable),
         Just(Refusal::OtherSerial),
         Just(Refusal::UnknownRequest),
+        Just(Refusal::Locked),
+        Just(Refusal::WrongAnswer),
+        Just(Refusal::NothingBefore),
+        Just(Refusal::StorageFailed),
+        Just(Refusal::Unsigned),
+        Just(Refusal::NoCalibration),
+        any::<(u32, u32)>().prop_map(|(shortest_ms, longest_ms)| Refusal::Period { shortest_ms, longest_ms }),
     ]
+}
+
+fn any_storage() -> impl Strategy<Value = StorageState> {
+    let source =
+        prop_oneof![Just(Source::Nothing), Just(Source::Factory), Just(Source::Committed), Just(Source::UntilPowerOff)];
+    (source, any::<(u32, bool, [u32; 2], Option<[u8; 8]>)>()).prop_map(
+        |(source, (sequence, can_roll_back, erases, key))| StorageState {
+            source,
+            sequence,
+            can_roll_back,
+            erases,
+            key,
+        },
+    )
 }
 
 fn any_response() -> impl Strategy<Value = Response> {
@@ -110,6 +142,14 @@ fn any_response() -> impl Strategy<Value = Response> {
         any_reading().prop_map(Response::Reading),
         Just(Response::Done),
         any_refusal().prop_map(Response::Refused),
+        (any::<(u16, u16)>(), proptest::collection::vec(any::<u8>(), 0..=MAX_CHUNK)).prop_map(
+            |((offset, length), bytes)| Response::Piece { offset, length, bytes: bytes.into_iter().collect() }
+        ),
+        any_storage().prop_map(Response::Storage),
+        any::<u64>().prop_map(|nonce| Response::Nonce { nonce }),
+        Just(Response::UntilPowerOff),
+        (any::<u32>(), any_reading()).prop_map(|(number, reading)| Response::StreamedReading { number, reading }),
+        (any::<u32>(), any_sample()).prop_map(|(number, sample)| Response::StreamedSample { number, sample }),
     ]
 }
 
@@ -242,6 +282,10 @@ fn the_longest_messages_fit_a_frame() {
     let reading = Reading { time_us: u64::MAX, acceleration_g: f32::MAX, status: sample.faults };
     let bytes = [0xFF; MAX_CHUNK].into_iter().collect();
     let write = Request::WriteBlob { offset: u16::MAX, bytes };
+    let piece = Response::Piece { offset: u16::MAX, length: u16::MAX, bytes: [0xFF; MAX_CHUNK].into_iter().collect() };
+    assert!(encode_response(&Envelope { sequence: u16::MAX, body: piece }).is_ok());
+    let streamed = Response::StreamedSample { number: u32::MAX, sample };
+    assert!(encode_response(&Envelope { sequence: u16::MAX, body: streamed }).is_ok());
     assert!(encode_response(&Envelope { sequence: u16::MAX, body: Response::Measured { sample, reading } }).is_ok());
     assert!(encode_request(&Envelope { sequence: u16::MAX, body: Request::Replay(sample) }).is_ok());
     assert!(encode_request(&Envelope { sequence: u16::MAX, body: write }).is_ok());

@@ -3,8 +3,8 @@
 use firmware_core::program::{Input, Step};
 use protocol::limits;
 use protocol::{
-    Decoder, Envelope, FrameError, Identity, InstrumentState, Reading, Refusal, Request, Response, Sample, Status,
-    encode_frame,
+    Decoder, Envelope, FrameError, Identity, InstrumentState, Reading, Refusal, Request, Response, Sample, Source,
+    Status, StorageState, Streamed, encode_frame, unlock_answer,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -46,7 +46,7 @@ fn reading() -> Reading {
     Reading { time_us: 1_500_000, acceleration_g: 1.5, status: Status::SETTLING }
 }
 
-fn requests() -> [Request; 7] {
+fn requests() -> [Request; 14] {
     [
         Request::Identify,
         Request::ReadState,
@@ -55,11 +55,18 @@ fn requests() -> [Request; 7] {
         Request::Replay(sample()),
         Request::WriteBlob { offset: 128, bytes: [0xDE, 0xAD, 0x00, 0xEF].into_iter().collect() },
         Request::CommitBlob { length: 400 },
+        Request::ReadBlob { offset: 128 },
+        Request::ReadStorage,
+        Request::Challenge,
+        Request::Unlock { answer: unlock_answer(NONCE, SERIAL) },
+        Request::RollBack,
+        Request::Stream { what: Streamed::Samples, period_ms: 1000 },
+        Request::Stop,
     ]
 }
 
-fn responses() -> [Response; 6] {
-    let serial = "EXAMPLE-1".try_into().expect("a short name");
+fn responses() -> [Response; 12] {
+    let serial = SERIAL.try_into().expect("a short name");
     let provenance = Some(*b"exampl-1");
     [
         Response::Identity(Identity { serial, blob_layout: 2, effects: 22 }),
@@ -68,10 +75,25 @@ fn responses() -> [Response; 6] {
         Response::Reading(reading()),
         Response::Done,
         Response::Refused(Refusal::Offset(128)),
+        Response::Piece { offset: 128, length: 132, bytes: [0xDE, 0xAD, 0x00, 0xEF].into_iter().collect() },
+        Response::Storage(StorageState {
+            source: Source::Committed,
+            sequence: 3,
+            can_roll_back: true,
+            erases: [1, 2],
+            key: None,
+        }),
+        Response::Nonce { nonce: NONCE },
+        Response::UntilPowerOff,
+        Response::StreamedReading { number: 7, reading: reading() },
+        Response::StreamedSample { number: 7, sample: sample() },
     ]
 }
 
-const REFUSALS: [Refusal; 8] = [
+const SERIAL: &str = "EXAMPLE-1";
+const NONCE: u64 = 0x0123_4567_89AB_CDEF;
+
+const REFUSALS: [Refusal; 15] = [
     Refusal::Offset(0),
     Refusal::NotABlob,
     Refusal::Truncated,
@@ -80,11 +102,20 @@ const REFUSALS: [Refusal; 8] = [
     Refusal::Unusable,
     Refusal::OtherSerial,
     Refusal::UnknownRequest,
+    Refusal::Locked,
+    Refusal::WrongAnswer,
+    Refusal::NothingBefore,
+    Refusal::StorageFailed,
+    Refusal::Unsigned,
+    Refusal::NoCalibration,
+    Refusal::Period { shortest_ms: 10, longest_ms: 3_600_000 },
 ];
 
 #[test]
 fn every_message_has_the_documented_number() {
     let by_name = |numbers: Vec<(String, u32)>| numbers.into_iter().collect::<BTreeMap<_, _>>();
+    let sources = [Source::Nothing, Source::Factory, Source::Committed, Source::UntilPowerOff];
+    assert_eq!(by_name(sources.iter().map(|s| (name(s), number(s))).collect()), numbered("Storage"));
     assert_eq!(by_name(requests().iter().map(|r| (name(r), number(r))).collect()), numbered("Requests"));
     let mut answers: Vec<_> = responses().iter().map(|r| (name(r), number(r))).collect();
     answers.extend(REFUSALS.iter().map(|r| (name(r), number(r))));
@@ -127,6 +158,7 @@ fn every_limit_has_the_documented_value() {
         ("MAX_CHANNELS", limits::MAX_CHANNELS),
         ("MAX_NAME", limits::MAX_NAME),
         ("MAX_BLOB", limits::MAX_BLOB),
+        ("MAX_STORED", limits::MAX_STORED),
         ("MAX_CHUNK", limits::MAX_CHUNK),
         ("MAX_FRAME", limits::MAX_FRAME),
         ("MAX_LINE", limits::MAX_LINE),

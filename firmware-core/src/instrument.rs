@@ -1,80 +1,50 @@
 //! The conversation: bytes in, bytes out. No I/O of its own and no clock: both are arguments.
 
-use crate::compensator::Compensator;
-use crate::counter::{Counter, CounterError};
+use crate::calibrations::Calibrations;
 use crate::effect;
-use crate::thermometer::{Thermometer, ThermometerError};
+use crate::identity::IdentityRecord;
+use crate::lock::Lock;
+use crate::sensors::Sensors;
+use crate::storage::Storage;
+use crate::stream::Stream;
 use embedded_hal::i2c::I2c;
 use embedded_hal::spi::SpiDevice;
-use heapless::{String, Vec};
-use protocol::limits::{MAX_BLOB, MAX_CHANNELS, MAX_CHUNK, MAX_NAME};
+use embedded_storage::nor_flash::NorFlash;
 use protocol::{
     Blob, Decoder, Envelope, FrameError, Identity, InstrumentState, Line, Reading, Refusal, Request, Response, Sample,
-    Status, encode_response,
+    Status, Streamed, encode_response,
 };
 
-/// The two sensors of the instrument.
-#[derive(Debug)]
-pub struct Sensors<SPI, I2C> {
-    /// Frequencies of the resonators.
-    pub counter: Counter<SPI>,
-    /// Temperature of the package.
-    pub thermometer: Thermometer<I2C>,
-}
+/// Half of the shortest period of a stream.
+const LOOK_EVERY_US: u32 = 5_000;
 
-impl<SPI: SpiDevice, I2C: I2c> Sensors<SPI, I2C> {
-    /// One instant. A sensor that fails is a flag in the sample, never the end of measuring.
-    pub fn sample(&mut self, time_us: u64) -> Sample {
-        let (pair, frequency_fault) = match self.counter.frequencies() {
-            Ok(pair) => (Some(pair), Status::empty()),
-            Err(CounterError::NotReady) => (None, Status::RESONATOR_FAULT | Status::STALE),
-            Err(_) => (None, Status::RESONATOR_FAULT),
-        };
-        let (temperature_uc, temperature_fault) = match self.thermometer.temperature_uc() {
-            Ok(temperature_uc) => (temperature_uc, Status::empty()),
-            Err(ThermometerError::NotReady) => (0, Status::THERMOMETER_FAULT | Status::STALE),
-            Err(_) => (0, Status::THERMOMETER_FAULT),
-        };
-        let mut sample = match pair {
-            Some(pair) => Sample::from_pair(time_us, pair.f1_uhz, pair.f2_uhz, temperature_uc),
-            None => Sample::from_difference(time_us, 0, temperature_uc),
-        };
-        sample.faults = frequency_fault | temperature_fault;
-        // Nothing here measures them yet; a calibration that needs one flags it.
-        sample.channels = [Sample::NOT_MEASURED; MAX_CHANNELS];
-        sample
-    }
-}
-
-/// An instrument: sensors, a calibration, and a conversation about both.
-pub struct Instrument<SPI, I2C> {
+/// An instrument: sensors, calibrations, and a conversation about both.
+pub struct Instrument<SPI, I2C, F> {
     sensors: Sensors<SPI, I2C>,
-    serial: String<MAX_NAME>,
-    calibration: Option<Calibration>,
-    incoming: Vec<u8, MAX_BLOB>,
+    calibrations: Calibrations<F>,
+    lock: Lock,
+    stream: Option<Stream>,
     decoder: Decoder,
     answered: u16,
     answer: Line,
+    unasked: Line,
     readings: u32,
     raised: Status,
 }
 
-struct Calibration {
-    compensator: Compensator,
-    provenance: [u8; 8],
-}
-
-impl<SPI: SpiDevice, I2C: I2c> Instrument<SPI, I2C> {
-    /// An instrument that waits for its calibration.
-    pub const fn new(sensors: Sensors<SPI, I2C>, serial: String<MAX_NAME>) -> Self {
+impl<SPI: SpiDevice, I2C: I2c, F: NorFlash> Instrument<SPI, I2C, F> {
+    /// An instrument as after power-on, with the newest of the stored calibrations that it can use. Without one
+    /// it measures all the same, and every reading says so.
+    pub fn start(sensors: Sensors<SPI, I2C>, identity: IdentityRecord, storage: Storage<F>) -> Self {
         Self {
             sensors,
-            serial,
-            calibration: None,
-            incoming: Vec::new(),
+            calibrations: Calibrations::start(identity, storage),
+            lock: Lock::new(),
+            stream: None,
             decoder: Decoder::new(),
             answered: 0,
             answer: Line::new(),
+            unasked: Line::new(),
             readings: 0,
             raised: Status::empty(),
         }
@@ -83,6 +53,11 @@ impl<SPI: SpiDevice, I2C: I2c> Instrument<SPI, I2C> {
     /// The sensors, for whoever owns the hardware.
     pub const fn sensors_mut(&mut self) -> &mut Sensors<SPI, I2C> {
         &mut self.sensors
+    }
+
+    /// The storage, for whoever owns the hardware.
+    pub const fn storage_mut(&mut self) -> &mut Storage<F> {
+        self.calibrations.storage_mut()
     }
 
     /// Takes one byte from the line; at the end of a request returns the answer's bytes.
@@ -94,9 +69,13 @@ impl<SPI: SpiDevice, I2C: I2c> Instrument<SPI, I2C> {
             Err(FrameError::UnknownMessage { sequence }) => (sequence, None),
             Err(_) => return None,
         };
+        if sequence == 0 {
+            // A conversation begins: nobody listens to the stream of the one before.
+            self.stream = None;
+        }
         if sequence == 0 || sequence != self.answered {
             let body = match request {
-                Some(request) => self.answer(request, time_us),
+                Some(request) => self.answer(request, sequence, time_us).unwrap_or_else(Response::Refused),
                 None => Response::Refused(Refusal::UnknownRequest),
             };
             self.answer = encode_response(&Envelope { sequence, body }).ok()?;
@@ -105,94 +84,93 @@ impl<SPI: SpiDevice, I2C: I2c> Instrument<SPI, I2C> {
         Some(&self.answer)
     }
 
-    /// Uses a stored calibration from now on; the one in use runs on unless this passes every check.
-    ///
-    /// # Errors
-    /// A [`Refusal`] that says why it can't be used.
-    pub fn load(&mut self, bytes: &[u8]) -> Result<(), Refusal> {
-        self.calibration = Some(check(bytes, &self.serial)?);
-        Ok(())
+    /// What a stream has to say at this time, unasked.
+    pub fn poll(&mut self, time_us: u64) -> Option<&[u8]> {
+        let stream = self.stream.as_mut().filter(|stream| stream.is_due(time_us))?;
+        let sample = self.sensors.sample(time_us);
+        if sample.faults.contains(Status::STALE) && stream.waits(time_us) {
+            return None;
+        }
+        let (what, sequence, number) = (stream.what, stream.sequence, stream.take(time_us));
+        let reading = self.compensate(&sample);
+        let body = match what {
+            Streamed::Readings => Response::StreamedReading { number, reading },
+            Streamed::Samples => Response::StreamedSample { number, sample },
+        };
+        self.unasked = encode_response(&Envelope { sequence, body }).ok()?;
+        Some(&self.unasked)
     }
 
-    /// The answer to one request.
-    pub fn answer(&mut self, request: Request, time_us: u64) -> Response {
+    /// How often a stream wants to be polled, µs; `None` while there is none.
+    pub const fn wake_every_us(&self) -> Option<u32> {
+        if self.stream.is_some() { Some(LOOK_EVERY_US) } else { None }
+    }
+
+    fn answer(&mut self, request: Request, sequence: u16, time_us: u64) -> Result<Response, Refusal> {
         match request {
-            Request::Identify => Response::Identity(Identity {
-                serial: self.serial.clone(),
-                blob_layout: Blob::LAYOUT,
-                effects: effect::HIGHEST,
-            }),
-            Request::ReadState => Response::State(self.state()),
+            Request::Identify => return Ok(Response::Identity(self.identity())),
+            Request::ReadState => return Ok(Response::State(self.state())),
             Request::Measure => {
                 let sample = self.sensors.sample(time_us);
-                Response::Measured { sample, reading: self.compensate(&sample) }
+                return Ok(Response::Measured { sample, reading: self.compensate(&sample) });
             }
             Request::Restart => {
-                if let Some(calibration) = &mut self.calibration {
-                    calibration.compensator.restart();
+                if let Some(compensator) = self.calibrations.compensator_mut() {
+                    compensator.restart();
                 }
-                Response::Done
             }
-            Request::Replay(sample) => Response::Reading(self.compensate(&sample)),
-            Request::WriteBlob { offset, bytes } => self.write(usize::from(offset), &bytes),
-            Request::CommitBlob { length } => self.commit(usize::from(length)),
-            _ => Response::Refused(Refusal::UnknownRequest),
+            Request::Replay(sample) => return Ok(Response::Reading(self.compensate(&sample))),
+            Request::Stream { what, period_ms } => {
+                self.stream = Some(Stream::new(what, period_ms, sequence, time_us)?);
+            }
+            Request::Stop => self.stream = None,
+            Request::ReadBlob { offset } => return self.calibrations.piece(offset),
+            Request::ReadStorage => return Ok(Response::Storage(self.calibrations.state())),
+            Request::Challenge => return Ok(Response::Nonce { nonce: self.lock.challenge(time_us) }),
+            Request::Unlock { answer } => {
+                self.lock.answer(answer, &self.calibrations.identity().serial, time_us)?;
+                self.calibrations.forget();
+            }
+            Request::WriteBlob { offset, bytes } => {
+                self.lock.check(time_us)?;
+                self.calibrations.write(usize::from(offset), &bytes)?;
+            }
+            Request::CommitBlob { length } => {
+                self.use_unlock(time_us)?;
+                return self.calibrations.commit(usize::from(length));
+            }
+            Request::RollBack => {
+                self.use_unlock(time_us)?;
+                self.calibrations.roll_back()?;
+            }
+            _ => return Err(Refusal::UnknownRequest),
         }
+        Ok(Response::Done)
+    }
+
+    /// An unlock serves once.
+    fn use_unlock(&mut self, time_us: u64) -> Result<(), Refusal> {
+        let allowed = self.lock.check(time_us);
+        self.lock.close();
+        allowed
+    }
+
+    fn identity(&self) -> Identity {
+        let serial = self.calibrations.identity().serial.clone();
+        Identity { serial, blob_layout: Blob::LAYOUT, effects: effect::HIGHEST }
     }
 
     fn state(&self) -> InstrumentState {
-        InstrumentState {
-            provenance: self.calibration.as_ref().map(|calibration| calibration.provenance),
-            readings: self.readings,
-            raised: self.raised,
-        }
+        InstrumentState { provenance: self.calibrations.provenance(), readings: self.readings, raised: self.raised }
     }
 
     fn compensate(&mut self, sample: &Sample) -> Reading {
-        let reading = match &mut self.calibration {
-            Some(calibration) => calibration.compensator.compensate(sample),
+        let reading = match self.calibrations.compensator_mut() {
+            Some(compensator) => compensator.compensate(sample),
             None => Reading::none(sample.time_us, sample.faults | Status::UNCALIBRATED),
         };
         self.readings = self.readings.wrapping_add(1);
         self.raised |= reading.status;
         reading
     }
-
-    fn write(&mut self, offset: usize, bytes: &Vec<u8, MAX_CHUNK>) -> Response {
-        if offset == 0 {
-            self.incoming.clear();
-        }
-        // A repeated piece (its answer got lost) is taken again, a missing one is asked for.
-        if offset > self.incoming.len() {
-            return Response::Refused(Refusal::Offset(u16::try_from(self.incoming.len()).unwrap_or(u16::MAX)));
-        }
-        self.incoming.truncate(offset);
-        match self.incoming.extend_from_slice(bytes) {
-            Ok(()) => Response::Done,
-            Err(_) => Response::Refused(Refusal::Unusable),
-        }
-    }
-
-    /// The old calibration runs on unless the new one passes every check.
-    fn commit(&mut self, length: usize) -> Response {
-        let Some(bytes) = self.incoming.get(..length) else {
-            return Response::Refused(Refusal::Truncated);
-        };
-        match check(bytes, &self.serial) {
-            Ok(calibration) => {
-                self.calibration = Some(calibration);
-                Response::Done
-            }
-            Err(refusal) => Response::Refused(refusal),
-        }
-    }
-}
-
-fn check(bytes: &[u8], serial: &str) -> Result<Calibration, Refusal> {
-    let blob = Blob::from_bytes(bytes)?;
-    if !blob.serial.is_empty() && blob.serial != serial {
-        return Err(Refusal::OtherSerial);
-    }
-    let compensator = Compensator::load(&blob).map_err(|_| Refusal::Unusable)?;
-    Ok(Calibration { compensator, provenance: blob.provenance })
 }

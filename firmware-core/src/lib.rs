@@ -3,6 +3,7 @@
 //! ```text
 //!              counter.rs  thermometer.rs      drivers over embedded-hal
 //!                   └─────┬─────┘
+//!                         │ sensors.rs         what they say and what is wrong with them
 //!                      Sample                  integers of one instant
 //!                         │ observe.rs         integer differences, time, then f32
 //!                    Observation
@@ -12,6 +13,11 @@
 //!   network.rs ───────┴───┤ compensator.rs
 //!                      Reading                 acceleration and its status
 //!                         │ instrument.rs      the conversation: requests in, responses out
+//!   stream.rs ────────────┤                    measuring at a period, unasked
+//!   lock.rs ──────────────┤                    who may write
+//!   calibrations.rs ──────┘                    the one in use, the next one, the one before
+//!     │ signature.rs  identity.rs              whose calibrations are taken
+//!   storage.rs                                 two slots of flash that survive a power cut
 //! ```
 //!
 //! Everything that computes is generic over [`Real`]: the device runs it in `f32`, the trainer in
@@ -20,26 +26,34 @@
 #![no_std]
 
 pub mod activation;
+mod calibrations;
 mod compensator;
 mod counter;
 pub mod effect;
 mod identity;
 mod instrument;
+mod lock;
 mod memory;
 mod network;
 mod observe;
 pub mod program;
 mod real;
+mod sensors;
+mod signature;
+pub mod storage;
+mod stream;
 mod terms;
 mod thermometer;
 
 pub use compensator::{Compensator, LoadError, Output};
 pub use counter::{Counter, CounterError, Pair};
-pub use identity::serial_number;
-pub use instrument::{Instrument, Sensors};
+pub use identity::{FactoryKey, IDENTITY, IdentityRecord};
+pub use instrument::Instrument;
 pub use memory::{Memory, State};
 pub use network::Network;
 pub use observe::{Clock, Observation, Scale};
 pub use real::Real;
+pub use sensors::Sensors;
+pub use storage::Storage;
 pub use terms::Terms;
 pub use thermometer::{Thermometer, ThermometerError};

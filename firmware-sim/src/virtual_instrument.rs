@@ -2,7 +2,7 @@
 //!
 //! What a host does with the instrument on its bench it can do with this one, and get the same bits.
 
-use crate::link::{Link, LinkError};
+use crate::link::{Kept, Link, LinkError};
 use crate::virtual_counter::VirtualCounter;
 use crate::virtual_line::VirtualLine;
 use crate::virtual_thermometer::VirtualThermometer;
@@ -32,7 +32,7 @@ impl VirtualInstrument {
     ///
     /// # Errors
     /// [`LinkError::Refused`] with the instrument's reason; the old calibration then runs on.
-    pub fn upload(&mut self, blob: &Blob) -> Result<(), LinkError> {
+    pub fn upload(&mut self, blob: &Blob) -> Result<Kept, LinkError> {
         self.link.upload_blob(blob)
     }
 
@@ -58,6 +58,13 @@ impl VirtualInstrument {
         // The casts saturate, and turn NaN into zero.
         self.counter_mut().finish_gate((f1_hz * 1e6).round() as u64, (f2_hz * 1e6).round() as u64);
         self.thermometer_mut().convert((temperature_c * 1e6).round() as i32);
+    }
+
+    /// Takes the power away and gives it back; what is in flash stays.
+    pub fn power_cycle(&mut self) {
+        self.link.transport_mut().power_cycle();
+        // A new power-on is a new conversation.
+        self.link.begin();
     }
 
     /// Sets the instrument's clock.

@@ -54,9 +54,10 @@ impl VirtualThermometer {
         self.data_ready = true;
     }
 
-    /// Puts any bits into the temperature register, as no conversion would.
+    /// Puts any bits into the temperature register, as no conversion would, and says that one ended.
     pub const fn force_register(&mut self, bits: u16) {
         self.temperature = bits.cast_signed();
+        self.data_ready = true;
     }
 
     fn register(&mut self) -> u16 {
@@ -65,7 +66,10 @@ impl VirtualThermometer {
                 self.data_ready = false;
                 self.temperature.cast_unsigned()
             }
-            CONFIGURATION => CONFIGURATION_AT_RESET | if self.data_ready { DATA_READY } else { 0 },
+            CONFIGURATION => {
+                let ready = std::mem::take(&mut self.data_ready);
+                CONFIGURATION_AT_RESET | if ready { DATA_READY } else { 0 }
+            }
             DEVICE_ID => match self.fault {
                 PartFault::OtherPart(id) => id,
                 _ => ID,

@@ -15,7 +15,7 @@ use crate::i2c;
 use crate::serial_line::SerialLine;
 use crate::spi;
 use core::arch::asm;
-use protocol::limits::{MAX_BLOB, MAX_NAME};
+use firmware_core::IDENTITY;
 
 /// The core's and all buses' clock.
 pub const CLOCK_HZ: u32 = 16_000_000;
@@ -61,6 +61,9 @@ const RCC_AHB1ENR: Register = Register(RCC + 0x30);
 const RCC_APB1ENR: Register = Register(RCC + 0x40);
 const RCC_APB2ENR: Register = Register(RCC + 0x44);
 
+const NVIC_ISER0: Register = Register(0xE000_E100);
+const NVIC_ICPR0: Register = Register(0xE000_E280);
+const TIM2_INTERRUPT: u32 = 1 << 28;
 const NVIC_ISER1: Register = Register(0xE000_E104);
 const NVIC_ICPR1: Register = Register(0xE000_E284);
 const USART1_INTERRUPT: u32 = 1 << (37 - 32);
@@ -80,6 +83,55 @@ pub mod systick {
     pub const RVR: Register = Register(0xE000_E014);
     /// Current value.
     pub const CVR: Register = Register(0xE000_E018);
+}
+
+/// The timer that ends a sleep. It runs once: QEMU's fires without end otherwise.
+mod tim2 {
+    use super::{CLOCK_HZ, Register};
+
+    const BASE: u32 = 0x4000_0000;
+    const CR1: Register = Register(BASE);
+    const DIER: Register = Register(BASE + 0x0C);
+    const SR: Register = Register(BASE + 0x10);
+    const EGR: Register = Register(BASE + 0x14);
+    const PSC: Register = Register(BASE + 0x28);
+    const ARR: Register = Register(BASE + 0x2C);
+
+    const RUN: u32 = 1 << 0;
+    /// Only the end of the time is an event, not the update that begins it.
+    const END_ONLY: u32 = 1 << 2;
+    const ONCE: u32 = 1 << 3;
+
+    /// Lets the interrupt become pending after this time.
+    pub fn start(after_us: u32) {
+        PSC.write(CLOCK_HZ / 1_000_000 - 1);
+        ARR.write(after_us);
+        DIER.write(1);
+        CR1.write(END_ONLY);
+        EGR.write(1);
+        CR1.write(END_ONLY | ONCE | RUN);
+    }
+
+    /// Whatever it was doing, it is over.
+    pub fn stop() {
+        CR1.write(0);
+        SR.write(0);
+    }
+}
+
+/// What erases and writes the flash.
+pub mod flash {
+    use super::Register;
+
+    const BASE: u32 = 0x4002_3C00;
+    /// Access, caches.
+    pub const ACR: Register = Register(BASE);
+    /// Keys.
+    pub const KEYR: Register = Register(BASE + 0x04);
+    /// Status.
+    pub const SR: Register = Register(BASE + 0x0C);
+    /// Control.
+    pub const CR: Register = Register(BASE + 0x10);
 }
 
 /// The line to the host.
@@ -180,7 +232,7 @@ impl Board {
     /// Starts everything.
     pub fn start() -> Self {
         RCC_AHB1ENR.modify(0, 0b11);
-        RCC_APB1ENR.modify(0, 1 << 21);
+        RCC_APB1ENR.modify(0, 1 << 21 | 1 << 0);
         RCC_APB2ENR.modify(0, 1 << 4 | 1 << 12);
         for pin in [9, 10] {
             PORT_A.connect(pin, 7);
@@ -197,6 +249,7 @@ impl Board {
         // Interrupts are never taken: pending ones end a sleep, and the loop looks what there is.
         // SAFETY: masking interrupts touches no memory.
         unsafe { asm!("cpsid i", options(nomem, nostack, preserves_flags)) };
+        NVIC_ISER0.write(TIM2_INTERRUPT);
         NVIC_ISER1.write(USART1_INTERRUPT);
         Self {
             counter: spi::Device::start(),
@@ -207,10 +260,15 @@ impl Board {
     }
 }
 
-/// Sleeps until a byte arrived or a second of the clock went by; returns at once if either already happened.
-pub fn sleep() {
+/// Sleeps until a byte arrived, the clock turned or `longest_us` went by; returns at once if one of them already happened.
+pub fn sleep(longest_us: Option<u32>) {
+    if let Some(longest_us) = longest_us {
+        tim2::start(longest_us);
+    }
     // SAFETY: waiting for an interrupt touches no memory.
     unsafe { asm!("wfi", options(nomem, nostack, preserves_flags)) };
+    tim2::stop();
+    NVIC_ICPR0.write(TIM2_INTERRUPT);
     NVIC_ICPR1.write(USART1_INTERRUPT);
     SCB_ICSR.write(ICSR_CLEAR_SYSTICK);
 }
@@ -223,20 +281,31 @@ pub fn reset() -> ! {
     }
 }
 
-// memory.x places both in flash that nothing writes while the program runs; any bytes are valid.
+// memory.x places both. Any bytes are valid; nothing writes the first while the program runs.
 unsafe extern "C" {
     #[link_name = "_identity"]
-    safe static IDENTITY: [u8; MAX_NAME];
+    safe static IDENTITY_RECORD: [u8; IDENTITY];
     #[link_name = "_calibration"]
-    safe static CALIBRATION: [u8; MAX_BLOB];
+    safe static SLOTS: [u8; 2 * SLOT_BYTES as usize];
 }
 
-/// The record of the sensor's serial number.
-pub fn identity() -> &'static [u8] {
-    &IDENTITY
+/// Bytes of one slot: a sector.
+pub const SLOT_BYTES: u32 = 128 * 1024;
+
+/// The record of who the sensor is.
+pub fn identity() -> &'static [u8; IDENTITY] {
+    &IDENTITY_RECORD
 }
 
-/// The stored calibration, or whatever else is there.
-pub fn calibration() -> &'static [u8] {
-    &CALIBRATION
+/// A byte of the slots, as it is now.
+pub fn read_slots(at: u32) -> Option<u8> {
+    // SAFETY: an address within both slots; volatile, because the flash changes them behind the compiler's back.
+    (at < 2 * SLOT_BYTES).then(|| unsafe { (&raw const SLOTS).cast::<u8>().add(at as usize).read_volatile() })
+}
+
+/// Hands a word of the slots to the flash, which is open for writing.
+pub fn write_slots(at: u32, word: u32) -> Option<()> {
+    // SAFETY: an aligned address within both slots, which are no memory of Rust's: they are read as volatile.
+    (at % 4 == 0 && at < 2 * SLOT_BYTES)
+        .then(|| unsafe { (&raw const SLOTS).cast_mut().cast::<u32>().add(at as usize / 4).write_volatile(word) })
 }

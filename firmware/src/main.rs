@@ -4,12 +4,13 @@
 
 mod board;
 mod clock;
+mod flash;
 mod i2c;
 mod serial_line;
 mod spi;
 
 use board::Board;
-use firmware_core::{Counter, Instrument, Sensors, Thermometer, serial_number};
+use firmware_core::{Counter, IdentityRecord, Instrument, Sensors, Storage, Thermometer};
 
 /// The counter's reference clock.
 const REFERENCE_HZ: u32 = 100_000_000;
@@ -21,18 +22,20 @@ fn main() -> ! {
         counter: Counter::new(counter, REFERENCE_HZ),
         thermometer: Thermometer::new(thermometer, Thermometer::<i2c::Bus>::ADDRESS),
     };
-    let mut instrument = Instrument::new(sensors, serial_number(board::identity()));
-    // Without a valid calibration it measures all the same, and every reading says so.
-    let _ = instrument.load(board::calibration());
+    let identity = IdentityRecord::from_bytes(board::identity());
+    let mut instrument = Instrument::start(sensors, identity, Storage::new(flash::Flash, board::SLOT_BYTES));
     loop {
         let time_us = clock.now_us();
+        if let Some(message) = instrument.poll(time_us) {
+            line.send(message);
+        }
         match line.receive() {
             Some(byte) => {
                 if let Some(answer) = instrument.receive(byte, time_us) {
                     line.send(answer);
                 }
             }
-            None => board::sleep(),
+            None => board::sleep(instrument.wake_every_us()),
         }
     }
 }

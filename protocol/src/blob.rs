@@ -166,6 +166,14 @@ impl Blob {
         buffer.get(..end + CHECKSUM).ok_or(BlobError::TooLarge)
     }
 
+    /// The bytes that a blob at the beginning of `bytes` says it takes; `None` if no header is there.
+    #[must_use]
+    pub fn stored_length(bytes: &[u8]) -> Option<usize> {
+        let ([m0, m1, m2, m3, _, _, n0, n1], _) = bytes.split_first_chunk::<HEADER>()?;
+        let length = HEADER + usize::from(u16::from_le_bytes([*n0, *n1])) + CHECKSUM;
+        ([*m0, *m1, *m2, *m3] == MAGIC && length <= MAX_BLOB).then_some(length)
+    }
+
     /// Reads a blob from the beginning of `bytes`; what follows it (erased flash) is ignored.
     ///
     /// # Errors

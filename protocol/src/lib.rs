@@ -3,7 +3,8 @@
 //! ```text
 //! Sample   raw integers of one instant            sample.rs
 //! Reading  acceleration and its status            reading.rs
-//! Blob     a calibration, as the device stores it blob.rs, weights.rs
+//! Blob     a calibration, as the device stores it blob.rs, weights.rs, signature.rs
+//! Unlock   what allows a host to write one        unlock.rs
 //! Request, Response                               message.rs
 //! bytes on the line                               frame.rs
 //! every bound in one place                        limits.rs
@@ -20,12 +21,16 @@ pub mod limits;
 mod message;
 mod reading;
 mod sample;
+mod signature;
+mod unlock;
 mod weights;
 
 pub use blob::{Blob, BlobError, Domain, Scaling, Term, Timing};
 pub use checksum::crc32;
 pub use frame::{Decoder, FrameError, Line, encode_frame, encode_request, encode_response};
-pub use message::{Envelope, Identity, InstrumentState, Refusal, Request, Response};
+pub use message::{Envelope, Identity, InstrumentState, Refusal, Request, Response, Source, StorageState, Streamed};
 pub use reading::{Reading, Status};
 pub use sample::Sample;
+pub use signature::Signed;
+pub use unlock::unlock_answer;
 pub use weights::Weights;

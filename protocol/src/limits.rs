@@ -16,6 +16,10 @@ pub const MAX_CHANNELS: usize = 8;
 pub const MAX_NAME: usize = 24;
 /// Bytes of a stored calibration, envelope included.
 pub const MAX_BLOB: usize = 1024;
+/// Bytes of a factory signature behind a blob: a mark of four and the 64 of Ed25519.
+pub const SIGNATURE: usize = 68;
+/// Bytes of a stored calibration with its signature.
+pub const MAX_STORED: usize = MAX_BLOB + SIGNATURE;
 /// Bytes of calibration carried by one message.
 pub const MAX_CHUNK: usize = 128;
 /// Bytes of one frame before byte stuffing, checksum included.

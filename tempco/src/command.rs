@@ -4,9 +4,11 @@ mod add;
 mod change;
 mod compare;
 mod demo;
+mod device;
 mod diagnose;
 mod effects;
 mod export;
+mod flash;
 mod inspect;
 mod plan;
 mod remove;
@@ -35,6 +37,8 @@ pub enum Command {
     Export(export::Export),
     Inspect(inspect::Inspect),
     Verify(verify::Verify),
+    Flash(flash::Flash),
+    Device(device::Device),
     Reproduce(reproduce::Reproduce),
 }
 
@@ -54,6 +58,8 @@ impl Command {
             Self::Export(command) => command.run(),
             Self::Inspect(command) => command.run(),
             Self::Verify(command) => command.run(),
+            Self::Flash(command) => command.run(),
+            Self::Device(command) => command.run(),
             Self::Reproduce(command) => command.run(),
         }
     }

@@ -2,14 +2,17 @@
 //!
 //! A command parses, calls the library and renders; it computes nothing.
 
-mod calibration_region;
 mod command;
 mod data;
 mod failure;
+mod hex;
+mod key;
+mod link;
 mod page;
 mod plot;
 mod progress;
 mod recordings;
+mod region;
 mod render;
 mod report;
 mod subject;

@@ -2,6 +2,7 @@
 
 pub mod diagnosis;
 pub mod plan;
+pub mod status;
 
 use crate::table::Table;
 use std::fmt::Write;

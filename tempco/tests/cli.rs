@@ -56,7 +56,7 @@ fn a_model_goes_from_training_over_export_to_a_verified_instrument() {
     let text = stdout(tempco(folder.path()).args(["compare", "model.toml", SMALL]));
     assert!(text.starts_with("Residual ") && text.contains("Zero-bias stability"), "{text}");
     let text = stdout(tempco(folder.path()).args(["export", "model.toml", "-o", "calibration.hex"]));
-    assert!(text.contains("for address 0x080e0000"), "{text}");
+    assert!(text.contains("for address 0x080c0000"), "{text}");
     let text = stdout(tempco(folder.path()).args(["inspect", "calibration.hex"]));
     assert!(text.contains("A device would take it."), "{text}");
     let text = stdout(tempco(folder.path()).args(["verify", "model.toml", SMALL]));

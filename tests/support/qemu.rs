@@ -14,6 +14,9 @@ use tempfile::TempDir;
 const LOOKS: usize = 600;
 const LOOK: Duration = Duration::from_millis(50);
 
+/// More bytes than a slot uses.
+const ERASED: usize = 2048;
+
 /// A running microcontroller; dropping it switches it off.
 pub struct Microcontroller {
     emulator: Child,
@@ -31,6 +34,21 @@ impl Microcontroller {
     /// With an instruction, if the image or QEMU is missing.
     #[must_use]
     pub fn start(identity: &[u8], calibration: &[u8], patience: Duration) -> Self {
+        Self::start_image(&image(), identity, calibration, patience)
+    }
+
+    /// The same with the variant of the image that checks signatures.
+    ///
+    /// # Panics
+    /// As [`Microcontroller::start`].
+    #[must_use]
+    pub fn start_with_signatures(identity: &[u8], patience: Duration) -> Self {
+        let mut name = image().into_os_string();
+        name.push("-signatures");
+        Self::start_image(&present(name.into()), identity, &[], patience)
+    }
+
+    fn start_image(image: &Path, identity: &[u8], calibration: &[u8], patience: Duration) -> Self {
         let folder = tempfile::tempdir().expect("a folder for temporary files");
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let port = listener.local_addr().expect("a bound port").port();
@@ -39,10 +57,12 @@ impl Microcontroller {
             .args(["-M", "netduinoplus2", "-display", "none", "-monitor", "none", "-serial", "chardev:line"])
             .args(["-chardev", &format!("socket,id=line,host=127.0.0.1,port={port},nodelay=on")])
             .arg("-kernel")
-            .arg(image());
+            .arg(image);
         for (region, bytes) in [("IDENTITY", identity), ("CALIBRATION", calibration)] {
             if !bytes.is_empty() {
-                command.args(["-device", &loader(&folder.path().join(region), bytes, &origin(region))]);
+                // QEMU's flash is zero where nobody wrote; a programmer leaves it erased.
+                let erased = bytes.iter().copied().chain(std::iter::repeat(0xFF)).take(ERASED).collect::<Vec<_>>();
+                command.args(["-device", &loader(&folder.path().join(region), &erased, &origin(region))]);
             }
         }
         let mut emulator = command.stdin(Stdio::null()).spawn().unwrap_or_else(|error| {
@@ -60,6 +80,10 @@ fn image() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
     let built = || target.join("thumbv7em-none-eabihf/firmware/firmware");
     let image = std::env::var_os("TEMPCO_FIRMWARE_ELF").map_or_else(built, PathBuf::from);
+    present(image)
+}
+
+fn present(image: PathBuf) -> PathBuf {
     assert!(image.is_file(), "no image at {}; build it with .ci/firmware", image.display());
     image
 }

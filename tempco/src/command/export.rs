@@ -1,9 +1,10 @@
 //! `tempco export model.toml -o calibration.hex`
 
-use crate::calibration_region::calibration_region;
 use crate::failure::{Answer, Failure};
+use crate::key::SecretKey;
+use crate::{hex, region};
 use clap::Args;
-use ihex::Record;
+use firmware_core::storage::empty_slot;
 use std::path::{Path, PathBuf};
 use trainer::model::Model;
 
@@ -19,11 +20,18 @@ pub struct Export {
     /// Where to write it: `.hex` gives Intel HEX at the calibration address of `memory.x`, anything else the bare blob
     #[arg(short, long, value_name = "FILE", default_value = "calibration.bin")]
     output: PathBuf,
+
+    /// Signs it with the factory's key: for instruments that take no other calibration (`tempco device keygen`)
+    #[arg(long, value_name = "KEYFILE")]
+    sign: Option<PathBuf>,
 }
 
 impl Export {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let bytes = Model::read(&self.model)?.to_bytes()?;
+        let mut bytes = Model::read(&self.model)?.to_bytes()?;
+        if let Some(file) = &self.sign {
+            bytes = SecretKey::read(file)?.sign(&bytes);
+        }
         let where_to = write(&self.output, &bytes)?;
         anstream::println!("{} bytes written to {}{where_to}", bytes.len(), self.output.display());
         Ok(Answer::Yes)
@@ -33,21 +41,14 @@ impl Export {
 /// Writes the blob in the format that the file's name asks for, and says where a device will find it.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<String, Failure> {
     if path.extension().is_some_and(|extension| extension == "hex") {
-        let (origin, _) = calibration_region().ok_or_else(|| Failure::new("memory.x names no CALIBRATION region"))?;
-        std::fs::write(path, hex(origin, bytes)?).map_err(|error| Failure::io(path, &error))?;
+        let (origin, length) = region::calibration()?;
+        // The programmer erases what it writes to: a mark in the second slot takes away what was committed there.
+        let (at, mark) = empty_slot();
+        let text = hex::text(&[(origin, bytes), (origin + length / 2 + at, &mark)])?;
+        std::fs::write(path, text).map_err(|error| Failure::io(path, &error))?;
         Ok(format!(", for address {origin:#010x}"))
     } else {
         std::fs::write(path, bytes).map_err(|error| Failure::io(path, &error))?;
         Ok(String::new())
     }
-}
-
-fn hex(origin: u32, bytes: &[u8]) -> Result<String, Failure> {
-    let mut records = vec![Record::ExtendedLinearAddress((origin >> 16) as u16)];
-    for (index, line) in bytes.chunks(16).enumerate() {
-        let offset = (origin as u16).wrapping_add((16 * index) as u16);
-        records.push(Record::Data { offset, value: line.to_vec() });
-    }
-    records.push(Record::EndOfFile);
-    ihex::create_object_file_representation(&records).map_err(Failure::new)
 }

@@ -2,12 +2,12 @@
 
 use crate::data::Data;
 use crate::failure::{Answer, Failure};
+use crate::hex::first_piece;
 use crate::table::Table;
 use clap::Args;
 use firmware_core::Compensator;
 use firmware_core::effect::ALL;
-use protocol::Blob;
-use std::path::Path;
+use protocol::{Blob, Signed};
 use trainer::campaign::Campaign;
 use trainer::expression::print;
 use trainer::model::Model;
@@ -25,7 +25,7 @@ impl Inspect {
         let file = self.data.files.first().ok_or_else(|| Failure::new("name a file"))?;
         match file.extension().and_then(|extension| extension.to_str()) {
             Some("bin") => blob(&std::fs::read(file).map_err(|error| Failure::io(file, &error))?),
-            Some("hex") => blob(&read_hex(file)?),
+            Some("hex") => blob(&first_piece(file)?),
             Some("toml") => {
                 let model = Model::read(file)?;
                 anstream::println!("{}", model.to_text());
@@ -37,18 +37,6 @@ impl Inspect {
             }
         }
     }
-}
-
-fn read_hex(file: &Path) -> Result<Vec<u8>, Failure> {
-    let text = std::fs::read_to_string(file).map_err(|error| Failure::io(file, &error))?;
-    let mut bytes = Vec::new();
-    for (line, record) in ihex::Reader::new(&text).enumerate() {
-        match record.map_err(|error| Failure::new(format_args!("{}:{}: {error}", file.display(), line + 1)))? {
-            ihex::Record::Data { value, .. } => bytes.extend(value),
-            _ => continue,
-        }
-    }
-    Ok(bytes)
 }
 
 fn blob(bytes: &[u8]) -> Result<Answer, Failure> {
@@ -70,6 +58,9 @@ fn blob(bytes: &[u8]) -> Result<Answer, Failure> {
         f64::from(t_low) * 1e-6,
         f64::from(t_high) * 1e-6
     );
+    if Signed::split(bytes).is_some_and(|signed| signed.signature.is_some()) {
+        anstream::println!("  signed");
+    }
     for term in &blob.terms {
         let name = ALL.iter().find(|about| about.id == term.effect).map_or("unknown effect", |about| about.name);
         let text = print(&term.program, &blob.channels).map(|text| format!(" {text}")).unwrap_or_default();

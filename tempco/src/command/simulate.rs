@@ -74,7 +74,7 @@ fn list() {
 }
 
 /// A built-in scenario by name, or a file.
-fn scenario(name: &str) -> Result<Scenario, Failure> {
+pub fn scenario(name: &str) -> Result<Scenario, Failure> {
     if let Some(scenario) = Scenario::preset(name) {
         return Ok(scenario);
     }

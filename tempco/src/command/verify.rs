@@ -1,26 +1,38 @@
-//! `tempco verify MODEL DATA`
+//! `tempco verify MODEL DATA --on PORT`
 
 use crate::data::Data;
 use crate::failure::{Answer, Failure};
+use crate::link::{AnyLink, PORTS, Port};
 use crate::progress::bar;
 use clap::Args;
-use firmware_sim::virtual_instrument::VirtualInstrument;
-use protocol::{Blob, Request};
+use protocol::{Blob, Signed};
 use std::path::PathBuf;
-use trainer::campaign::{Campaign, Run};
+use trainer::campaign::Campaign;
 use trainer::model::Model;
 use trainer::replay::replay;
 use trainer::residuals::arranged;
 
-/// Replays a campaign on the virtual instrument, over its own wire, and compares every reading's bits with this computer's.
+/// Replays a campaign on an instrument, over its line, and compares every reading's bits with this computer's.
+///
+/// An instrument that is made for the occasion gets the calibration first; any other one must hold it.
 #[derive(Args)]
-#[command(after_help = "Example:  tempco verify model.toml campaign.csv")]
+#[command(
+    after_help = "Example:  tempco verify model.toml campaign.csv\n          tempco verify model.toml campaign.csv --on qemu\n          tempco verify model.toml campaign.csv --on /dev/ttyUSB0"
+)]
 pub struct Verify {
     /// Model file
     model: PathBuf,
 
     #[command(flatten)]
     data: Data,
+
+    #[arg(
+        long,
+        value_name = "PORT",
+        default_value = "sim",
+        help = format!("Which instrument: `sim`, the virtual one; `qemu` or `qemu:IMAGE`, the microcontroller's image in QEMU; or {PORTS}")
+    )]
+    on: Port,
 
     /// Prints one JSON object instead of text
     #[arg(long)]
@@ -31,7 +43,14 @@ impl Verify {
     pub fn run(&self) -> Result<Answer, Failure> {
         let model = Model::read(&self.model)?;
         let campaign = arranged(&model, &self.data.read()?)?;
-        let parity = verify(&model.to_blob()?, &campaign)?;
+        let blob = model.to_blob()?;
+        let mut link = self.on.open(&blob.serial)?;
+        if self.on.is_made_anew() {
+            link.upload_blob(&blob)?;
+        } else if !holds(&mut link, &model.to_bytes()?)? {
+            return self.other();
+        }
+        let parity = compare(&blob, &campaign, &mut link)?;
         if self.json {
             let Parity { samples, identical, .. } = parity;
             anstream::println!("{:#}", serde_json::json!({ "samples": samples, "identical": identical }));
@@ -40,6 +59,27 @@ impl Verify {
         }
         Ok(if parity.identical == parity.samples { Answer::Yes } else { Answer::No })
     }
+
+    fn other(&self) -> Result<Answer, Failure> {
+        if self.json {
+            anstream::println!("{:#}", serde_json::json!({ "samples": 0, "identical": 0, "other_calibration": true }));
+        } else {
+            anstream::println!(
+                "The instrument holds another calibration than {0}. Write this one with  tempco flash {0} --to PORT",
+                self.model.display()
+            );
+        }
+        Ok(Answer::No)
+    }
+}
+
+/// Whether the instrument holds this very calibration, signed or not.
+fn holds(link: &mut AnyLink, blob: &[u8]) -> Result<bool, Failure> {
+    if link.state()?.provenance.is_none() {
+        return Ok(false);
+    }
+    let held = link.read_calibration()?;
+    Ok(Signed::split(&held).is_some_and(|held| held.blob == blob))
 }
 
 /// How many readings had the same bits.
@@ -59,33 +99,34 @@ impl std::fmt::Display for Parity {
     }
 }
 
-/// Uploads the blob to a virtual instrument and replays every run there and here.
+/// Writes the blob into a virtual instrument and replays every run there and here.
 pub fn verify(blob: &Blob, campaign: &Campaign) -> Result<Parity, Failure> {
-    let mut instrument = VirtualInstrument::new(&blob.serial);
-    instrument.upload(blob)?;
+    let mut link = Port::Sim.open(&blob.serial)?;
+    link.upload_blob(blob)?;
+    compare(blob, campaign, &mut link)
+}
+
+/// Replays every run there and here.
+fn compare(blob: &Blob, campaign: &Campaign, link: &mut AnyLink) -> Result<Parity, Failure> {
     let mut parity = Parity { samples: 0, identical: 0, first_difference: None };
     let bar = bar(campaign.row_count() as u64, "verifying");
     for run in &campaign.runs {
-        verify_run(blob, run, &mut instrument, &mut parity)?;
-        bar.inc(run.rows.len() as u64);
-    }
-    bar.finish_and_clear();
-    Ok(parity)
-}
-
-fn verify_run(blob: &Blob, run: &Run, instrument: &mut VirtualInstrument, parity: &mut Parity) -> Result<(), Failure> {
-    let samples: Vec<_> = run.rows.iter().map(|row| row.sample).collect();
-    // A run begins as after power-on: the host's replay starts with empty memories too.
-    instrument.exchange(Request::Restart)?;
-    let there = instrument.replay(&samples)?;
-    let here = replay(blob, run)?;
-    for (index, (there, here)) in there.iter().zip(&here).enumerate() {
-        parity.samples += 1;
-        if there.same_bits(here) {
-            parity.identical += 1;
-        } else if parity.first_difference.is_none() {
-            parity.first_difference = Some(format!("run {}, row {}: {there:?} and {here:?}", run.name, index + 1));
+        let here = replay(blob, run)?;
+        // A run begins as after power-on: the host's replay starts with empty memories too.
+        link.restart()?;
+        for (index, (row, here)) in run.rows.iter().zip(&here).enumerate() {
+            let there = link.replay(&row.sample)?;
+            parity.samples += 1;
+            if there.same_bits(here) {
+                parity.identical += 1;
+            } else if parity.first_difference.is_none() {
+                parity.first_difference = Some(format!("run {}, row {}: {there:?} and {here:?}", run.name, index + 1));
+            }
+            bar.inc(1);
         }
     }
-    Ok(())
+    // What comes next is the instrument's own life again.
+    link.restart()?;
+    bar.finish_and_clear();
+    Ok(parity)
 }

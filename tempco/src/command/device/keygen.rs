@@ -1,0 +1,39 @@
+//! `tempco device keygen -o factory`
+
+use crate::failure::{Answer, Failure};
+use crate::key::{SecretKey, digits, write_public};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Makes the factory's pair of keys: one that signs calibrations, one that instruments hold.
+#[derive(Args)]
+#[command(
+    after_help = "Example:  tempco device keygen -o factory\n          tempco device provision --serial SN-0042 --key factory.pub -o identity.hex\n          tempco export model.toml --sign factory.key -o calibration.hex"
+)]
+pub struct Keygen {
+    /// Name of both files, without their endings `.key` (keep it secret) and `.pub`
+    #[arg(short, long, value_name = "NAME", default_value = "factory")]
+    output: PathBuf,
+
+    /// Prints one JSON object instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+impl Keygen {
+    pub fn run(&self) -> Result<Answer, Failure> {
+        let file = |ending: &str| PathBuf::from(format!("{}.{ending}", self.output.display()));
+        let key = SecretKey::generate()?;
+        key.write(&file("key"))?;
+        write_public(&file("pub"), &key.public())?;
+        if self.json {
+            anstream::println!("{:#}", serde_json::json!({ "key": digits(&key.public()) }));
+        } else {
+            let (secret, public) = (file("key"), file("pub"));
+            anstream::println!("Key {}", digits(&key.public()));
+            anstream::println!("  {} signs; keep it secret and safe", secret.display());
+            anstream::println!("  {} goes into instruments: tempco device provision", public.display());
+        }
+        Ok(Answer::Yes)
+    }
+}

@@ -1,0 +1,68 @@
+//! `tempco device status PORT`
+
+use super::Target;
+use crate::failure::{Answer, Failure};
+use crate::key::digits;
+use crate::render::status::{names, words};
+use clap::Args;
+use protocol::{InstrumentState, Source, StorageState};
+
+/// Asks an instrument how it is: its calibration, its storage, and every flag since power-on.
+///
+/// Exit code 1 if it is uncalibrated.
+#[derive(Args)]
+#[command(after_help = "Example:  tempco device status tcp:127.0.0.1:7000 --json")]
+pub struct Status {
+    #[command(flatten)]
+    target: Target,
+}
+
+impl Status {
+    pub fn run(&self) -> Result<Answer, Failure> {
+        let mut link = self.target.port.connect()?;
+        let (state, storage) = (link.state()?, link.storage()?);
+        if self.target.json {
+            anstream::println!("{:#}", json(&state, &storage));
+        } else {
+            anstream::print!("{}", text(&state, &storage));
+        }
+        Ok(if storage.source == Source::Nothing { Answer::No } else { Answer::Yes })
+    }
+}
+
+fn text(state: &InstrumentState, storage: &StorageState) -> String {
+    let name = state.provenance.map(|provenance| digits(&provenance)).unwrap_or_default();
+    let calibration = match storage.source {
+        Source::Nothing => "none: every reading is without a number".to_owned(),
+        Source::Factory => format!("{name}, put into flash by a programmer"),
+        Source::Committed => format!("{name}, number {} of those sent over the wire", storage.sequence),
+        Source::UntilPowerOff => format!("{name}, in RAM until power-off: storing it failed"),
+    };
+    let back = if storage.can_roll_back { "there is one to go back to" } else { "there is none to go back to" };
+    let key = match storage.key {
+        None => "not asked for".to_owned(),
+        Some(key) => format!("asked for, by the key {}…", digits(&key)),
+    };
+    let [first, second] = storage.erases;
+    format!(
+        "calibration  {calibration}\nbefore it    {back}\nsignature    {key}\nerases       {first} and {second} of each \
+         slot\nreadings     {} since power-on; raised: {}\n",
+        state.readings,
+        words(state.raised)
+    )
+}
+
+fn json(state: &InstrumentState, storage: &StorageState) -> serde_json::Value {
+    let source = match storage.source {
+        Source::Nothing => "nothing",
+        Source::Factory => "factory",
+        Source::Committed => "committed",
+        Source::UntilPowerOff => "until-power-off",
+    };
+    serde_json::json!({
+        "calibration": state.provenance.map(|provenance| digits(&provenance)),
+        "source": source, "sequence": storage.sequence, "can_roll_back": storage.can_roll_back,
+        "erases": storage.erases, "key": storage.key.map(|key| digits(&key)),
+        "readings": state.readings, "raised": names(state.raised),
+    })
+}
