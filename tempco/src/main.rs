@@ -8,11 +8,13 @@ mod failure;
 mod hex;
 mod key;
 mod link;
+mod page;
 mod plot;
 mod progress;
 mod recordings;
 mod region;
 mod render;
+mod report;
 mod subject;
 mod table;
 
