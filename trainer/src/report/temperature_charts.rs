@@ -92,11 +92,12 @@ fn deviation(nodes: &[Node], per_g: f64) -> Vec<[f64; 2]> {
     nodes.iter().map(|node| [node.temperature_c, (node.bias_g - middle) * per_g]).collect()
 }
 
-/// The output at −1, 0 and +1 g over temperature, raw and compensated, of the last run that counts and has them.
+/// The output at −1, 0 and +1 g over temperature, raw and compensated, of the run with the most nodes that counts.
 #[must_use]
 pub fn level_charts(model: &Model, comparison: &Comparison, residuals: &Residuals) -> Vec<Chart> {
-    let wanted = |run: &&RunFigures| (run.held_out || !comparison.held_out) && run.raw.full_temperature.is_some();
-    let Some(chosen) = comparison.figures.iter().rfind(wanted) else { return Vec::new() };
+    let nodes = |run: &RunFigures| run.raw.full_temperature.as_ref().map(|figures| figures.nodes.len());
+    let wanted = |run: &&RunFigures| (run.held_out || !comparison.held_out) && nodes(run).is_some();
+    let Some(chosen) = comparison.figures.iter().filter(wanted).max_by_key(|run| nodes(run)) else { return Vec::new() };
     let Some(run) = residuals.runs.iter().find(|run| run.run.name == chosen.run) else { return Vec::new() };
     let slope = mean_slope_g_per_hz(model);
     let raw_mg = |state: &State| state_mean(state, run, |k| run.run.rows[k].sample.delta_f_uhz as f64 * slope * 1e-3);
@@ -135,8 +136,9 @@ fn state_mean(state: &State, run: &RunResiduals, value: impl Fn(usize) -> f64) -
     mean(&state.rows.clone().filter(|k| *k < last).map(value).collect::<Vec<_>>())
 }
 
+/// Less the mean over the nodes, whatever number of states each has.
 fn about_mean(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let middle = mean(&points.iter().map(|point| point[1]).collect::<Vec<_>>());
+    let middle = mean(&node_means(points).iter().map(|node| node[1]).collect::<Vec<_>>());
     points.iter().map(|[x, y]| [*x, y - middle]).collect()
 }
 
