@@ -43,6 +43,16 @@ impl Default for Samples {
 }
 
 impl Samples {
+    /// The stream without its oddities: what an instrument sees every day.
+    pub fn ordinary() -> impl Iterator<Item = Sample> {
+        let mut samples = Self::default();
+        core::iter::repeat_with(move || {
+            samples.walk();
+            samples.count = samples.count.wrapping_add(1);
+            samples.present
+        })
+    }
+
     fn walk(&mut self) {
         let scatter = &mut self.scatter;
         let sample = &mut self.present;

@@ -4,6 +4,8 @@
 //! on_core.rs        arguments, printing and the end, through the emulator's semihosting
 //! on_host.rs        the same on the host
 //! bin/parity.rs     prints the hashes of everything computed
+//! bin/cost.rs       one piece of work over and over, to be counted
+//! bin/size_*.rs     parts linked alone, to be weighed
 //! ```
 #![cfg_attr(target_os = "none", no_std)]
 
