@@ -3,6 +3,7 @@
 use crate::compensator::Compensator;
 use crate::counter::{Counter, CounterError};
 use crate::effect;
+use crate::log;
 use crate::thermometer::{Thermometer, ThermometerError};
 use embedded_hal::i2c::I2c;
 use embedded_hal::spi::SpiDevice;
@@ -154,6 +155,7 @@ impl<SPI: SpiDevice, I2C: I2c> Instrument<SPI, I2C> {
             None => Reading::none(sample.time_us, sample.faults | Status::UNCALIBRATED),
         };
         self.readings = self.readings.wrapping_add(1);
+        log::raised(reading.status.difference(self.raised));
         self.raised |= reading.status;
         reading
     }
@@ -189,8 +191,9 @@ impl<SPI: SpiDevice, I2C: I2c> Instrument<SPI, I2C> {
 }
 
 fn check(bytes: &[u8], serial: &str) -> Result<Calibration, Refusal> {
-    let blob = Blob::from_bytes(bytes)?;
+    let blob = Blob::from_bytes(bytes).inspect_err(log::no_calibration)?;
     if !blob.serial.is_empty() && blob.serial != serial {
+        log::foreign();
         return Err(Refusal::OtherSerial);
     }
     let compensator = Compensator::load(&blob).map_err(|_| Refusal::Unusable)?;

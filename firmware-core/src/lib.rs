@@ -14,6 +14,8 @@
 //!                         │ instrument.rs      the conversation: requests in, responses out
 //! ```
 //!
+//! `log.rs` says what happens, to whoever debugs a device; without the feature `defmt` it is empty.
+//!
 //! Everything that computes is generic over [`Real`]: the device runs it in `f32`, the trainer in
 //! `f64`. The `f32` results have the same bits on every processor: only + − × ÷ and comparisons in a
 //! fixed order, software `exp` from `libm`, and no NaN is ever computed with.
@@ -25,6 +27,7 @@ mod counter;
 pub mod effect;
 mod identity;
 mod instrument;
+pub mod log;
 mod memory;
 mod network;
 mod observe;

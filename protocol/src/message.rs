@@ -92,6 +92,7 @@ pub struct InstrumentState {
 }
 
 /// Why a request was not carried out.
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Refusal {
