@@ -44,9 +44,6 @@ fn spoilt(spoil: fn(&mut Blob)) -> Vec<u8> {
 
 #[test]
 fn power_calibration_and_faults_are_logged_once_each() {
-    let faults = ["THERMOMETER_FAULT", "RESONATOR_FAULT"].map(|name| format!("raised for the first time: {name}"));
-    let [thermometer, resonator] = faults;
-    let uncalibrated = "raised for the first time: UNCALIBRATED".to_owned();
     let in_use = "calibration [65, 78, 61, 6d, 70, 6c, 2d, 31] in use, 6 effects";
     let table = [
         (example::blob_bytes(), in_use),
@@ -60,10 +57,10 @@ fn power_calibration_and_faults_are_logged_once_each() {
         let found = logged(example::SERIAL, &calibration);
         assert_eq!(found[0], "power on");
         assert!(found[1].starts_with(verdict), "{found:?}, expected {verdict}");
-        let mut raised = vec![thermometer.clone(), resonator.clone()];
-        if verdict != in_use {
-            raised.insert(0, uncalibrated.clone());
-        }
-        assert_eq!(found[2..], raised);
+        let raised =
+            |name: &str| found.iter().filter(|line| **line == format!("raised for the first time: {name}")).count();
+        // The board that QEMU emulates has no sensors.
+        assert_eq!((raised("THERMOMETER_FAULT"), raised("RESONATOR_FAULT")), (1, 1), "{found:?}");
+        assert_eq!(raised("UNCALIBRATED"), usize::from(verdict != in_use), "{found:?}");
     }
 }

@@ -117,7 +117,8 @@ impl Stack {
     /// If the emulator doesn't give its memory away.
     pub fn depth(&mut self) -> usize {
         let file = self.folder.path().join("memory");
-        let command = format!("pmemsave {} {RAM_BYTES} {}\n", origin("RAM"), file.display());
+        // Quoted, or the slash divides the number before it.
+        let command = format!("pmemsave {} {RAM_BYTES} \"{}\"\n", origin("RAM"), file.display());
         self.monitor.write_all(command.as_bytes()).expect("the emulator listens");
         let saved = || fs::read(&file).ok().filter(|memory| memory.len() == RAM_BYTES);
         let memory = (0..LOOKS).find_map(|_| {
