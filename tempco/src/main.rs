@@ -6,10 +6,12 @@ mod calibration_region;
 mod command;
 mod data;
 mod failure;
+mod page;
 mod plot;
 mod progress;
 mod recordings;
 mod render;
+mod report;
 mod subject;
 mod table;
 

@@ -3,6 +3,7 @@
 use crate::campaign::{Campaign, Run};
 use crate::metrics::allan::{AllanPoint, allan};
 use crate::metrics::full_temperature::{FullTemperature, full_temperature};
+use crate::metrics::stability::{Stability, stability};
 use crate::metrics::zero_bias::{ZeroBias, zero_bias};
 use crate::model::Model;
 use crate::noise::{rms, sample_sigma_g};
@@ -73,6 +74,8 @@ pub struct Figures {
     pub full_temperature: Option<FullTemperature>,
     /// Of evenly sampled runs of kind `zero` or `static`.
     pub allan: Option<Vec<AllanPoint>>,
+    /// Of the same runs, every definition of stability at rest.
+    pub stability: Option<Stability>,
 }
 
 /// Compares the model with every run of the campaign. Which runs were held out is read from the model.
@@ -82,9 +85,9 @@ pub struct Figures {
 pub fn compare(model: &Model, campaign: &Campaign) -> Result<Comparison, ResidualError> {
     let campaign = arranged(model, campaign)?;
     let residuals = residuals(model, &campaign.runs)?;
-    let seen = |run: &Run| model.provenance.training_runs.contains(&run.name) && same_campaign(model, &campaign);
-    let any_held_out = campaign.runs.iter().any(|run| !seen(run));
-    let counted = residuals.runs.iter().filter(|run| !any_held_out || !seen(run.run));
+    let unseen = |run: &Run| unseen(model, &campaign, run);
+    let any_held_out = campaign.runs.iter().any(unseen);
+    let counted = residuals.runs.iter().filter(|run| !any_held_out || unseen(run.run));
     let residual_g = rms(counted.flat_map(|run| &run.residuals_g));
     let sensitivity = sensitivity(model, &campaign);
     Ok(Comparison {
@@ -93,15 +96,15 @@ pub fn compare(model: &Model, campaign: &Campaign) -> Result<Comparison, Residua
         held_out: any_held_out,
         warnings: warnings(&campaign, &residuals, sensitivity.as_ref()),
         sensitivity_ppm: sensitivity,
-        runs: residuals.runs.iter().map(|run| run_comparison(run, !seen(run.run))).collect(),
-        figures: residuals.runs.iter().filter_map(|run| run_figures(model, run, !seen(run.run))).collect(),
+        runs: residuals.runs.iter().map(|run| run_comparison(run, unseen(run.run))).collect(),
+        figures: residuals.runs.iter().filter_map(|run| run_figures(model, run, unseen(run.run))).collect(),
     })
 }
 
-/// Another campaign's runs may bear the same names; none of them was seen.
-fn same_campaign(model: &Model, campaign: &Campaign) -> bool {
-    let hash: String = campaign.sha256.iter().map(|byte| format!("{byte:02x}")).collect();
-    model.provenance.campaign == hash
+/// Whether the training never saw a run. Another campaign's runs may bear the same names; none of them was seen.
+#[must_use]
+pub fn unseen(model: &Model, campaign: &Campaign, run: &Run) -> bool {
+    !(model.provenance.training_runs.contains(&run.name) && model.provenance.campaign == campaign.hash())
 }
 
 /// Noise from one sample to the next over all runs, g.
@@ -130,13 +133,17 @@ fn run_figures(model: &Model, run: &RunResiduals, held_out: bool) -> Option<RunF
     let readings_g: Vec<f64> = run.readings.iter().map(|reading| f64::from(reading.acceleration_g)).collect();
     let g_per_hz = mean_slope_g_per_hz(model);
     let raw_g: Vec<f64> = signal_hz.iter().map(|hz| hz * g_per_hz).collect();
-    let raw = figures(run.run, &raw_g, &raw_g, &signal_hz);
+    let raw_residuals_g: Vec<f64> =
+        raw_g.iter().zip(&run.run.rows).map(|(raw_g, row)| raw_g - row.reference_g).collect();
+    let raw = figures(run.run, &raw_g, &raw_residuals_g, &signal_hz);
     let compensated = figures(run.run, &readings_g, &run.residuals_g, &readings_g);
     let any = compensated.zero_bias.is_some() || compensated.full_temperature.is_some() || compensated.allan.is_some();
     any.then(|| RunFigures { run: run.run.name.clone(), held_out, raw, compensated })
 }
 
-fn mean_slope_g_per_hz(model: &Model) -> f64 {
+/// The slope of the model in the middle of its domain: what a raw figure in Hz is divided by.
+#[must_use]
+pub fn mean_slope_g_per_hz(model: &Model) -> f64 {
     let middle = |[low, high]: [f64; 2]| f64::midpoint(low, high);
     let delta_f_uhz = middle(model.domain.delta_f_uhz.map(|uhz| uhz as f64));
     SlopeOf::new(model).at(delta_f_uhz, middle(model.domain.temperature_uc.map(f64::from)))
@@ -144,9 +151,11 @@ fn mean_slope_g_per_hz(model: &Model) -> f64 {
 
 fn figures(run: &Run, outputs_g: &[f64], residuals_g: &[f64], outputs: &[f64]) -> Figures {
     let still = run.kind == "zero" || run.kind == "static";
+    let allan = still.then(|| allan(run, residuals_g)).flatten();
     Figures {
         zero_bias: zero_bias(run, outputs_g),
         full_temperature: full_temperature(run, outputs),
-        allan: still.then(|| allan(run, residuals_g)).flatten(),
+        stability: still.then(|| stability(run, residuals_g, allan.as_deref())),
+        allan,
     }
 }

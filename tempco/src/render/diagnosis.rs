@@ -26,7 +26,7 @@ pub fn first_to_add(diagnosis: &Diagnosis) -> Option<&str> {
 }
 
 /// The answer in a sentence or two.
-fn verdict(diagnosis: &Diagnosis) -> String {
+pub fn verdict(diagnosis: &Diagnosis) -> String {
     let Diagnosis { verdict, findings, residual_ug, residual_after_ug, noise_floor_ug, explainable, .. } = diagnosis;
     let found: Vec<&str> = findings.iter().map(|finding| finding.effect.as_str()).collect();
     let with = match (verdict, found.len()) {
@@ -117,7 +117,7 @@ fn explained(finding: &Finding) -> String {
     if let Some(about) = about {
         let _ = writeln!(text, "  {}\n  {}", about.summary, about.equation);
     }
-    let parameters: Vec<String> = ordered(finding, about).into_iter().map(parameter).collect();
+    let parameters = parameters(finding);
     if !parameters.is_empty() {
         let _ = writeln!(text, "  {}", parameters.join(", "));
     }
@@ -132,6 +132,11 @@ fn explained(finding: &Finding) -> String {
         let _ = writeln!(text, "  No instrument can foresee it: it can be known, not compensated.");
     }
     text
+}
+
+/// The parameters in the effect's own order, each with its uncertainty and unit.
+pub fn parameters(finding: &Finding) -> Vec<String> {
+    ordered(finding, about(&finding.effect)).into_iter().map(parameter).collect()
 }
 
 /// The parameters in the effect's own order, with their units.
@@ -178,14 +183,24 @@ fn chance(probability: f64) -> String {
 }
 
 fn noise(noise: &Noise) -> String {
-    let Noise { sample_ug, flicker_ug, wander_ug, walk_ug_per_sqrt_h, node_ug, position_ug, mounting_ug, run_ug } =
-        noise;
+    let Noise {
+        sample_ug,
+        flicker_ug,
+        wander_ug,
+        walk_ug_per_sqrt_h,
+        node_ug,
+        position_ug,
+        pose_ug,
+        mounting_ug,
+        run_ug,
+    } = noise;
     let parts = [
         (flicker_ug, "µg flicker"),
         (wander_ug, "µg wander within hours"),
         (walk_ug_per_sqrt_h, "µg/√h walk"),
         (node_ug, "µg from node to node"),
         (position_ug, "µg per g of tilt from position to position"),
+        (pose_ug, "µg from position to position"),
         (mounting_ug, "µg per g of tilt from mounting to mounting"),
         (run_ug, "µg from run to run"),
     ];
