@@ -7,6 +7,9 @@ fn main() {
     println!("cargo:rerun-if-changed={root}/memory.x");
     println!("cargo:rustc-link-search={root}");
     println!("cargo:rustc-link-arg-bins=-Tlink.x");
+    if var("CARGO_FEATURE_LOG").is_ok() {
+        println!("cargo:rustc-link-arg-bins=-Tdefmt.x");
+    }
     // Without this the linker pads the sections to pages, which a flash image has no use for.
     println!("cargo:rustc-link-arg-bins=--nmagic");
 }

@@ -5,14 +5,15 @@ use tests::workspace::{sources, text};
 use toml::Table;
 
 /// Each crate and the crates of this workspace that it may depend on.
-const MAY_DEPEND_ON: [(&str, &[&str]); 7] = [
+const MAY_DEPEND_ON: [(&str, &[&str]); 8] = [
     ("protocol", &[]),
     ("firmware-core", &["protocol"]),
     ("firmware", &["firmware-core", "protocol"]),
     ("firmware-sim", &["firmware-core", "protocol"]),
     ("trainer", &["firmware-core", "protocol"]),
     ("tempco", &["firmware-core", "firmware-sim", "protocol", "trainer"]),
-    ("tests", &["firmware-core", "firmware-sim", "protocol", "tempco", "trainer"]),
+    ("tests", &["cores", "firmware-core", "firmware-sim", "protocol", "tempco", "trainer"]),
+    ("tests/cores", &["firmware-core", "protocol"]),
 ];
 
 fn manifest(folder: &str) -> Table {
@@ -29,7 +30,7 @@ fn internal_dependencies(folder: &str) -> BTreeSet<String> {
         .flatten()
         .filter_map(toml::Value::as_table)
         .flat_map(|dependencies| dependencies.keys().cloned())
-        .filter(|name| MAY_DEPEND_ON.iter().any(|(member, _)| member == name))
+        .filter(|name| MAY_DEPEND_ON.iter().any(|(folder, _)| folder.rsplit('/').next() == Some(name)))
         .collect()
 }
 

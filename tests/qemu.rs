@@ -86,6 +86,25 @@ fn without_sensors_it_measures_flags_and_never_hangs() {
     }
 }
 
+/// Of the 128 KiB that there are; `docs/cost.md` has what is used.
+const STACK_BUDGET: usize = 24 * 1024;
+
+#[test]
+fn the_stack_stays_within_its_budget() {
+    let (microcontroller, mut stack) =
+        Microcontroller::start_painted(example::SERIAL.as_bytes(), &example::blob_bytes(), PATIENCE);
+    let mut link = Link::new(microcontroller);
+    // The deepest paths: a calibration taken over while another is in use, and readings with every kind of memory.
+    link.upload_blob(&example::with_expression()).expect("the example is sound");
+    for sample in &example::samples(200) {
+        link.replay(sample).expect("an answer");
+    }
+    link.measure().expect("an answer");
+    let depth = stack.depth();
+    println!("stack: {depth} bytes");
+    assert!((1024..=STACK_BUDGET).contains(&depth), "{depth} bytes of stack, {STACK_BUDGET} are allowed");
+}
+
 #[test]
 fn where_the_flash_is_a_rom_it_says_so_and_runs_from_ram() {
     let mut link = started(example::SERIAL.as_bytes(), &example::blob_bytes());

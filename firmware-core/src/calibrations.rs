@@ -4,6 +4,7 @@
 
 use crate::compensator::Compensator;
 use crate::identity::{FactoryKey, IdentityRecord};
+use crate::log;
 use crate::signature;
 use crate::storage::{Bytes, Slot, Storage, Stored};
 use embedded_storage::nor_flash::NorFlash;
@@ -38,6 +39,9 @@ impl<F: NorFlash> Calibrations<F> {
             if all.use_stored(slot).is_ok() {
                 break;
             }
+        }
+        if all.in_use.is_none() {
+            log::none_stored();
         }
         all.incoming.clear();
         all
@@ -96,7 +100,7 @@ impl<F: NorFlash> Calibrations<F> {
             Err(_) => calibration.stored = false,
         }
         let answer = if calibration.stored { Response::Done } else { Response::UntilPowerOff };
-        self.in_use = Some(calibration);
+        self.put_to_use(calibration);
         self.incoming.clear();
         Ok(answer)
     }
@@ -153,8 +157,13 @@ impl<F: NorFlash> Calibrations<F> {
     fn use_stored(&mut self, slot: Slot) -> Result<(), Refusal> {
         let (stored, calibration) = self.look(slot)?;
         self.stored = Some(stored);
-        self.in_use = Some(calibration);
+        self.put_to_use(calibration);
         Ok(())
+    }
+
+    fn put_to_use(&mut self, calibration: Calibration) {
+        log::in_use(calibration.provenance);
+        self.in_use = Some(calibration);
     }
 
     /// The calibration in a slot, if it is whole and passes every check. Takes the place of what was being written.
@@ -167,8 +176,9 @@ impl<F: NorFlash> Calibrations<F> {
 }
 
 fn check(bytes: &[u8], identity: &IdentityRecord) -> Result<Calibration, Refusal> {
-    let blob = Blob::from_bytes(bytes)?;
+    let blob = Blob::from_bytes(bytes).inspect_err(log::no_calibration)?;
     if !blob.serial.is_empty() && blob.serial != identity.serial {
+        log::foreign();
         return Err(Refusal::OtherSerial);
     }
     signature::check(bytes, &identity.key)?;

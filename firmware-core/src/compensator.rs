@@ -1,6 +1,7 @@
 //! From a checked calibration and samples to readings.
 
 use crate::effect::Disturbance;
+use crate::log;
 use crate::network::Network;
 use crate::observe::{Observation, Scale};
 use crate::program::ProgramError;
@@ -11,6 +12,7 @@ use protocol::{Blob, Domain, Reading, Sample, Scaling, Status, Term};
 
 /// Why a calibration can't be run, although its bytes are sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum LoadError {
     /// This firmware doesn't know the effect.
@@ -105,6 +107,10 @@ impl Compensator<f32> {
     /// # Errors
     /// A [`LoadError`] that says why this firmware can't run it.
     pub fn load(blob: &Blob) -> Result<Self, LoadError> {
+        Self::proven(blob).inspect_err(log::unusable)
+    }
+
+    fn proven(blob: &Blob) -> Result<Self, LoadError> {
         let compensator = Self::assemble(blob)?;
         let computed = compensator.network.proof().ok_or(LoadError::Number)?;
         if computed != blob.proof {

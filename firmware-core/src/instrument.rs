@@ -4,6 +4,7 @@ use crate::calibrations::Calibrations;
 use crate::effect;
 use crate::identity::IdentityRecord;
 use crate::lock::Lock;
+use crate::log;
 use crate::sensors::Sensors;
 use crate::storage::Storage;
 use crate::stream::Stream;
@@ -170,6 +171,7 @@ impl<SPI: SpiDevice, I2C: I2c, F: NorFlash> Instrument<SPI, I2C, F> {
             None => Reading::none(sample.time_us, sample.faults | Status::UNCALIBRATED),
         };
         self.readings = self.readings.wrapping_add(1);
+        log::raised(reading.status.difference(self.raised));
         self.raised |= reading.status;
         reading
     }

@@ -20,6 +20,8 @@
 //!   storage.rs                                 two slots of flash that survive a power cut
 //! ```
 //!
+//! `log.rs` says what happens, to whoever debugs a device; without the feature `defmt` it is empty.
+//!
 //! Everything that computes is generic over [`Real`]: the device runs it in `f32`, the trainer in
 //! `f64`. The `f32` results have the same bits on every processor: only + − × ÷ and comparisons in a
 //! fixed order, software `exp` from `libm`, and no NaN is ever computed with.
@@ -33,6 +35,7 @@ pub mod effect;
 mod identity;
 mod instrument;
 mod lock;
+pub mod log;
 mod memory;
 mod network;
 mod observe;

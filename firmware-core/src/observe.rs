@@ -112,29 +112,37 @@ impl Clock {
         self.last = None;
     }
 
-    /// Takes the next sample: the step to it, the sample before it, and what to flag.
-    pub fn step(&mut self, sample: &Sample) -> (Step, Option<Sample>, Status) {
-        let last_gap_us = core::mem::replace(&mut self.last_gap_us, u64::MAX);
-        let Some(last) = self.last.replace(*sample) else {
-            return (Step::Anew, None, Status::empty());
+    /// The sample that time is measured from.
+    pub const fn last(&self) -> Option<&Sample> {
+        self.last.as_ref()
+    }
+
+    /// The step from the last sample to this one, and what to flag. [`Clock::pass`] takes it.
+    pub fn step(&self, sample: &Sample) -> (Step, Status) {
+        let Some(last) = &self.last else {
+            return (Step::Anew, Status::empty());
         };
         let gap_us = sample.time_us.abs_diff(last.time_us);
         let forward = sample.time_us > last.time_us;
         match (forward, gap_us > self.max_gap_us) {
-            (true, false) => {
-                self.last_gap_us = gap_us;
-                let paused = gap_us / PAUSE > last_gap_us;
-                (if paused { Step::Paused(gap_us) } else { Step::Forward(gap_us) }, Some(last), Status::empty())
-            }
-            (true, true) => (Step::Anew, Some(last), Status::STALE),
-            // A sample out of order: the later of the two remains the one to measure from.
-            (false, false) => {
-                (self.last, self.last_gap_us) = (Some(last), last_gap_us);
-                (Step::Held, Some(last), Status::TIME_REVERSED)
-            }
+            (true, false) if gap_us / PAUSE > self.last_gap_us => (Step::Paused(gap_us), Status::empty()),
+            (true, false) => (Step::Forward(gap_us), Status::empty()),
+            (true, true) => (Step::Anew, Status::STALE),
+            (false, false) => (Step::Held, Status::TIME_REVERSED),
             // The clock itself was set back: waiting for it to catch up would take for ever.
-            (false, true) => (Step::Anew, Some(last), Status::TIME_REVERSED),
+            (false, true) => (Step::Anew, Status::TIME_REVERSED),
         }
+    }
+
+    /// Measures from this sample on, which is `step` from the last.
+    pub fn pass(&mut self, sample: &Sample, step: Step) {
+        self.last_gap_us = match step {
+            // A sample out of order: the later of the two remains the one to measure from.
+            Step::Held => return,
+            Step::Forward(gap_us) | Step::Paused(gap_us) => gap_us,
+            Step::Anew => u64::MAX,
+        };
+        self.last = Some(*sample);
     }
 }
 
@@ -163,8 +171,9 @@ mod tests {
             (1090, Step::Forward(90), Status::empty()),
         ];
         for (time_us, step, status) in table {
-            let (found, _, flags) = clock.step(&Sample::from_difference(time_us, 0, 0));
-            assert_eq!((found, flags), (step, status), "at {time_us} µs");
+            let sample = Sample::from_difference(time_us, 0, 0);
+            assert_eq!(clock.step(&sample), (step, status), "at {time_us} µs");
+            clock.pass(&sample, step);
         }
         clock.restart();
         assert_eq!(clock.step(&Sample::from_difference(1091, 0, 0)).0, Step::Anew);

@@ -69,7 +69,13 @@ macro_rules! real {
                 value as Self
             }
             fn from_i64(value: i64) -> Self {
-                value as Self
+                /// Apart, or the compiler sees that both ways give the same and takes this one always.
+                #[inline(never)]
+                fn wide(value: i64) -> $type {
+                    value as $type
+                }
+                // Processors convert 32 bits with one instruction and 64 with a function.
+                i32::try_from(value).map_or_else(|_| wide(value), |value| value as Self)
             }
             fn to_f32(self) -> f32 {
                 self as f32
@@ -90,7 +96,7 @@ macro_rules! real {
                 <$type>::is_finite(self)
             }
             fn from_micro(micro: i64) -> Self {
-                micro as Self * $micro
+                Self::from_i64(micro) * $micro
             }
         }
     };

@@ -36,8 +36,8 @@ struct Term<R: Real> {
 
 /// What memories follow, at one instant.
 #[derive(Clone, Copy)]
-struct Instant<R> {
-    sample: Sample,
+struct Instant<'a, R> {
+    sample: &'a Sample,
     level_g: R,
 }
 
@@ -94,16 +94,17 @@ impl<R: Real> Terms<R> {
     /// Takes the next sample and its level into the memories; returns what to flag. The level is the
     /// static reading on the device, the reference in training, g.
     pub fn advance(&mut self, sample: &Sample, level_g: R) -> Status {
-        let (step, last, mut status) = self.clock.step(sample);
-        let last = last.map(|sample| Instant { sample, level_g: self.last_level_g });
-        let now = Instant { sample: *sample, level_g };
-        if step != Step::Held {
-            self.last_level_g = level_g;
-        }
+        let (step, mut status) = self.clock.step(sample);
+        let last = self.clock.last().map(|sample| Instant { sample, level_g: self.last_level_g });
+        let now = Instant { sample, level_g };
         for term in &mut self.terms {
             term.remember(step, &now, last.as_ref());
             status |= term.flags();
         }
+        if step != Step::Held {
+            self.last_level_g = level_g;
+        }
+        self.clock.pass(sample, step);
         status
     }
 
@@ -127,9 +128,9 @@ impl<R: Real> Terms<R> {
 }
 
 impl<R: Real> Term<R> {
-    fn remember(&mut self, step: Step, now: &Instant<R>, last: Option<&Instant<R>>) {
-        self.measured = self.is_measured(&now.sample);
-        let last = last.filter(|last| self.measured && self.is_measured(&last.sample));
+    fn remember(&mut self, step: Step, now: &Instant<'_, R>, last: Option<&Instant<'_, R>>) {
+        self.measured = self.is_measured(now.sample);
+        let last = last.filter(|last| self.measured && self.is_measured(last.sample));
         match (step, last) {
             (Step::Held, _) => {}
             (Step::Forward(gap_us), Some(last)) => {
@@ -156,9 +157,9 @@ impl<R: Real> Term<R> {
     }
 
     /// By how much the signal that this effect follows changed; what was measured is differenced as integers.
-    fn increment(&self, now: &Instant<R>, last: &Instant<R>) -> R {
-        let temperature_uc = |instant: &Instant<R>| i64::from(instant.sample.temperature_uc);
-        let channel = |instant: &Instant<R>| self.channel_of(&instant.sample);
+    fn increment(&self, now: &Instant<'_, R>, last: &Instant<'_, R>) -> R {
+        let temperature_uc = |instant: &Instant<'_, R>| i64::from(instant.sample.temperature_uc);
+        let channel = |instant: &Instant<'_, R>| self.channel_of(instant.sample);
         match self.effect.signal() {
             Signal::Temperature => R::from_micro(temperature_uc(now) - temperature_uc(last)),
             Signal::Channel => R::from_micro(channel(now).saturating_sub(channel(last))),

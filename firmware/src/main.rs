@@ -10,13 +10,20 @@ mod serial_line;
 mod spi;
 
 use board::Board;
-use firmware_core::{Counter, IdentityRecord, Instrument, Sensors, Storage, Thermometer};
+#[cfg(feature = "log")]
+use cortex_m as _;
+#[cfg(feature = "log-rtt")]
+use defmt_rtt as _;
+#[cfg(feature = "log-semihosting")]
+use defmt_semihosting as _;
+use firmware_core::{Counter, IdentityRecord, Instrument, Sensors, Storage, Thermometer, log};
 
 /// The counter's reference clock.
 const REFERENCE_HZ: u32 = 100_000_000;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
+    log::power_on();
     let Board { counter, thermometer, mut clock, mut line } = Board::start();
     let sensors = Sensors {
         counter: Counter::new(counter, REFERENCE_HZ),

@@ -95,6 +95,7 @@ pub struct Term {
 
 /// Why bytes are no calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum BlobError {
     /// Fewer bytes than the header and its length field promise.

@@ -187,6 +187,7 @@ pub enum Source {
 }
 
 /// Why a request was not carried out.
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Refusal {

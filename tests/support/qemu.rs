@@ -34,7 +34,7 @@ impl Microcontroller {
     /// With an instruction, if the image or QEMU is missing.
     #[must_use]
     pub fn start(identity: &[u8], calibration: &[u8], patience: Duration) -> Self {
-        Self::start_image(&image(), identity, calibration, patience)
+        Self::start_with(&image("firmware"), &[], identity, calibration, patience)
     }
 
     /// The same with the variant of the image that checks signatures.
@@ -43,12 +43,48 @@ impl Microcontroller {
     /// As [`Microcontroller::start`].
     #[must_use]
     pub fn start_with_signatures(identity: &[u8], patience: Duration) -> Self {
-        let mut name = image().into_os_string();
-        name.push("-signatures");
-        Self::start_image(&present(name.into()), identity, &[], patience)
+        Self::start_with(&image("firmware-signatures"), &[], identity, &[], patience)
     }
 
-    fn start_image(image: &Path, identity: &[u8], calibration: &[u8], patience: Duration) -> Self {
+    /// Starts the image that logs; [`Microcontroller::end`] gives what it logged.
+    ///
+    /// # Panics
+    /// As [`Microcontroller::start`].
+    #[must_use]
+    pub fn start_logging(identity: &[u8], calibration: &[u8], patience: Duration) -> Self {
+        let semihosting = ["-semihosting-config", "enable=on,target=native"];
+        Self::start_with(&image("firmware-logging"), &semihosting, identity, calibration, patience)
+    }
+
+    /// Starts the image that ships in a memory full of [`PAINT`]; [`Stack::depth`] sees how far down it was used.
+    ///
+    /// # Panics
+    /// As [`Microcontroller::start`].
+    #[must_use]
+    pub fn start_painted(identity: &[u8], calibration: &[u8], patience: Duration) -> (Self, Stack) {
+        let folder = tempfile::tempdir().expect("a folder for temporary files");
+        let paint = loader(&folder.path().join("paint"), &[PAINT; RAM_BYTES], &origin("RAM"));
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
+        let monitor = format!("tcp:{}", listener.local_addr().expect("a bound port"));
+        let options = ["-monitor", &monitor, "-device", &paint];
+        let mut started = Self::start_with(&image("firmware"), &options, identity, calibration, patience);
+        let monitor = accept(&listener, &mut started.emulator);
+        (started, Stack { monitor, folder })
+    }
+
+    /// Switches it off; returns what it logged, encoded.
+    ///
+    /// # Panics
+    /// If the emulator's output can't be read.
+    #[must_use]
+    pub fn end(mut self) -> Vec<u8> {
+        let _ = self.emulator.kill();
+        let mut log = Vec::new();
+        self.emulator.stdout.take().expect("a pipe").read_to_end(&mut log).expect("a readable pipe");
+        log
+    }
+
+    fn start_with(image: &Path, options: &[&str], identity: &[u8], calibration: &[u8], patience: Duration) -> Self {
         let folder = tempfile::tempdir().expect("a folder for temporary files");
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let port = listener.local_addr().expect("a bound port").port();
@@ -56,6 +92,7 @@ impl Microcontroller {
         command
             .args(["-M", "netduinoplus2", "-display", "none", "-monitor", "none", "-serial", "chardev:line"])
             .args(["-chardev", &format!("socket,id=line,host=127.0.0.1,port={port},nodelay=on")])
+            .args(options)
             .arg("-kernel")
             .arg(image);
         for (region, bytes) in [("IDENTITY", identity), ("CALIBRATION", calibration)] {
@@ -65,7 +102,7 @@ impl Microcontroller {
                 command.args(["-device", &loader(&folder.path().join(region), &erased, &origin(region))]);
             }
         }
-        let mut emulator = command.stdin(Stdio::null()).spawn().unwrap_or_else(|error| {
+        let mut emulator = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap_or_else(|error| {
             panic!("qemu-system-arm does not start ({error}); install it, on Debian: apt-get install qemu-system-arm")
         });
         let line = accept(&listener, &mut emulator);
@@ -75,15 +112,48 @@ impl Microcontroller {
     }
 }
 
-/// The image to test.
-fn image() -> PathBuf {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-    let built = || target.join("thumbv7em-none-eabihf/firmware/firmware");
-    let image = std::env::var_os("TEMPCO_FIRMWARE_ELF").map_or_else(built, PathBuf::from);
-    present(image)
+/// What memory is full of before the image starts.
+const PAINT: u8 = 0xA5;
+const RAM_BYTES: usize = 128 * 1024;
+/// More than any array that a function leaves untouched.
+const UNTOUCHED: usize = 8192;
+
+/// The memory of a running microcontroller, seen from the emulator.
+pub struct Stack {
+    monitor: TcpStream,
+    folder: TempDir,
 }
 
-fn present(image: PathBuf) -> PathBuf {
+impl Stack {
+    /// Bytes of stack that have been used since the start.
+    ///
+    /// # Panics
+    /// If the emulator doesn't give its memory away.
+    pub fn depth(&mut self) -> usize {
+        let file = self.folder.path().join("memory");
+        // Quoted, or the slash divides the number before it.
+        let command = format!("pmemsave {} {RAM_BYTES} \"{}\"\n", origin("RAM"), file.display());
+        self.monitor.write_all(command.as_bytes()).expect("the emulator listens");
+        let saved = || fs::read(&file).ok().filter(|memory| memory.len() == RAM_BYTES);
+        let memory = (0..LOOKS).find_map(|_| {
+            std::thread::sleep(LOOK);
+            saved()
+        });
+        let memory = memory.expect("the emulator saves its memory");
+        let from_top = memory.rchunks(UNTOUCHED).position(|piece| piece.iter().all(|byte| *byte == PAINT));
+        let used = &memory[RAM_BYTES - UNTOUCHED * from_top.expect("memory that was never used")..];
+        used.len() - used.iter().take_while(|byte| **byte == PAINT).count()
+    }
+}
+
+/// An image that `.ci/firmware` built: the one that ships, or the one that logs.
+///
+/// # Panics
+/// With an instruction, if it is missing.
+#[must_use]
+pub fn image(name: &str) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
+    let image = target.join("thumbv7em-none-eabihf/firmware").join(name);
     assert!(image.is_file(), "no image at {}; build it with .ci/firmware", image.display());
     image
 }
