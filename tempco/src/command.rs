@@ -1,20 +1,21 @@
 //! One verb, one file.
 
 mod add;
-mod change;
+pub mod change;
 mod compare;
-mod demo;
+pub mod demo;
 mod diagnose;
 mod effects;
-mod export;
-mod inspect;
-mod plan;
+pub mod export;
+pub mod inspect;
+pub mod plan;
 mod remove;
 mod reproduce;
-mod reveal;
+pub mod reveal;
 mod simulate;
-mod train;
-mod verify;
+pub mod train;
+pub mod verify;
+mod workbench;
 
 use crate::failure::{Answer, Failure};
 use clap::Subcommand;
@@ -36,6 +37,7 @@ pub enum Command {
     Inspect(inspect::Inspect),
     Verify(verify::Verify),
     Reproduce(reproduce::Reproduce),
+    Workbench(workbench::Workbench),
 }
 
 impl Command {
@@ -55,6 +57,7 @@ impl Command {
             Self::Inspect(command) => command.run(),
             Self::Verify(command) => command.run(),
             Self::Reproduce(command) => command.run(),
+            Self::Workbench(command) => command.run(),
         }
     }
 }

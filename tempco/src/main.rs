@@ -12,6 +12,7 @@ mod recordings;
 mod render;
 mod subject;
 mod table;
+mod workbench;
 
 use clap::Parser;
 use std::process::ExitCode;

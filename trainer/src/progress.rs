@@ -2,7 +2,11 @@
 
 /// Watches a training and may end it.
 pub trait Progress: Sync {
-    /// Called as restarts advance, from several threads.
+    /// Called before restarts begin, more than once where a training first makes a simpler model. Noise from sample to
+    /// sample, g, is what no residual falls below.
+    fn begins(&self, _restarts: usize, _noise_g: f64) {}
+
+    /// Called as restarts advance, from several threads. Those beyond the number that began go on from the best.
     fn restart(&self, _news: RestartNews) {}
 
     /// Whether the user wants to stop. What was found until then is kept.

@@ -6,6 +6,8 @@ use crate::progress::bar;
 use clap::Args;
 use firmware_sim::virtual_instrument::VirtualInstrument;
 use protocol::{Blob, Request};
+use serde::Serialize;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use trainer::campaign::{Campaign, Run};
 use trainer::model::Model;
@@ -43,6 +45,7 @@ impl Verify {
 }
 
 /// How many readings had the same bits.
+#[derive(Clone, Debug, Serialize)]
 pub struct Parity {
     pub samples: usize,
     pub identical: usize,
@@ -59,17 +62,33 @@ impl std::fmt::Display for Parity {
     }
 }
 
-/// Uploads the blob to a virtual instrument and replays every run there and here.
+/// Verifies with a progress bar.
 pub fn verify(blob: &Blob, campaign: &Campaign) -> Result<Parity, Failure> {
+    let bar = bar(campaign.row_count() as u64, "verifying");
+    let parity = verified(blob, campaign, |samples| {
+        bar.set_position(samples as u64);
+        ControlFlow::Continue(())
+    });
+    bar.finish_and_clear();
+    parity
+}
+
+/// Uploads the blob to a virtual instrument and replays every run there and here. After each run `observe` sees how many
+/// samples are done, and may end it.
+pub fn verified(
+    blob: &Blob,
+    campaign: &Campaign,
+    mut observe: impl FnMut(usize) -> ControlFlow<()>,
+) -> Result<Parity, Failure> {
     let mut instrument = VirtualInstrument::new(&blob.serial);
     instrument.upload(blob)?;
     let mut parity = Parity { samples: 0, identical: 0, first_difference: None };
-    let bar = bar(campaign.row_count() as u64, "verifying");
     for run in &campaign.runs {
         verify_run(blob, run, &mut instrument, &mut parity)?;
-        bar.inc(run.rows.len() as u64);
+        if observe(parity.samples).is_break() {
+            break;
+        }
     }
-    bar.finish_and_clear();
     Ok(parity)
 }
 

@@ -26,7 +26,7 @@ pub fn first_to_add(diagnosis: &Diagnosis) -> Option<&str> {
 }
 
 /// The answer in a sentence or two.
-fn verdict(diagnosis: &Diagnosis) -> String {
+pub fn verdict(diagnosis: &Diagnosis) -> String {
     let Diagnosis { verdict, findings, residual_ug, residual_after_ug, noise_floor_ug, explainable, .. } = diagnosis;
     let found: Vec<&str> = findings.iter().map(|finding| finding.effect.as_str()).collect();
     let with = match (verdict, found.len()) {
