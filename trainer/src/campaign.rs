@@ -104,6 +104,12 @@ impl Campaign {
         Self { runs, channels, quantity, ignored_columns: Vec::new(), sha256 }
     }
 
+    /// [`Campaign::sha256`] as text.
+    #[must_use]
+    pub fn hash(&self) -> String {
+        self.sha256.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
     /// Every row of every run.
     pub fn rows(&self) -> impl Iterator<Item = &Row> {
         self.runs.iter().flat_map(|run| &run.rows)

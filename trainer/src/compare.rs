@@ -82,9 +82,9 @@ pub struct Figures {
 pub fn compare(model: &Model, campaign: &Campaign) -> Result<Comparison, ResidualError> {
     let campaign = arranged(model, campaign)?;
     let residuals = residuals(model, &campaign.runs)?;
-    let seen = |run: &Run| model.provenance.training_runs.contains(&run.name) && same_campaign(model, &campaign);
-    let any_held_out = campaign.runs.iter().any(|run| !seen(run));
-    let counted = residuals.runs.iter().filter(|run| !any_held_out || !seen(run.run));
+    let unseen = |run: &Run| unseen(model, &campaign, run);
+    let any_held_out = campaign.runs.iter().any(unseen);
+    let counted = residuals.runs.iter().filter(|run| !any_held_out || unseen(run.run));
     let residual_g = rms(counted.flat_map(|run| &run.residuals_g));
     let sensitivity = sensitivity(model, &campaign);
     Ok(Comparison {
@@ -93,15 +93,15 @@ pub fn compare(model: &Model, campaign: &Campaign) -> Result<Comparison, Residua
         held_out: any_held_out,
         warnings: warnings(&campaign, &residuals, sensitivity.as_ref()),
         sensitivity_ppm: sensitivity,
-        runs: residuals.runs.iter().map(|run| run_comparison(run, !seen(run.run))).collect(),
-        figures: residuals.runs.iter().filter_map(|run| run_figures(model, run, !seen(run.run))).collect(),
+        runs: residuals.runs.iter().map(|run| run_comparison(run, unseen(run.run))).collect(),
+        figures: residuals.runs.iter().filter_map(|run| run_figures(model, run, unseen(run.run))).collect(),
     })
 }
 
-/// Another campaign's runs may bear the same names; none of them was seen.
-fn same_campaign(model: &Model, campaign: &Campaign) -> bool {
-    let hash: String = campaign.sha256.iter().map(|byte| format!("{byte:02x}")).collect();
-    model.provenance.campaign == hash
+/// Whether the training never saw a run. Another campaign's runs may bear the same names; none of them was seen.
+#[must_use]
+pub fn unseen(model: &Model, campaign: &Campaign, run: &Run) -> bool {
+    !(model.provenance.training_runs.contains(&run.name) && model.provenance.campaign == campaign.hash())
 }
 
 /// Noise from one sample to the next over all runs, g.

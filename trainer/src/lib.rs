@@ -27,6 +27,7 @@ pub mod model;
 pub mod noise;
 pub mod progress;
 pub mod replay;
+pub mod report;
 pub mod reproduction;
 pub mod residuals;
 pub mod sensitivity;

@@ -3,12 +3,14 @@
 use crate::data::Data;
 use crate::failure::{Answer, Failure};
 use crate::render;
+use crate::report::html;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use trainer::campaign::{Campaign, HoldOut};
 use trainer::compare::compare;
 use trainer::cross_validation::{CrossValidation, cross_validate};
 use trainer::model::Model;
+use trainer::report::report;
 use trainer::train::{EffectChoice, TrainSettings};
 
 /// Compares a model with measurements, run by run, in the device's own arithmetic.
@@ -28,6 +30,10 @@ pub struct Compare {
     /// Trains again without each inner level and temperature, and says how well the model holds there
     #[arg(long)]
     cross_validate: bool,
+
+    /// Writes a report for people as well: one HTML file that needs nothing else
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
 
     /// Prints one JSON object instead of text
     #[arg(long)]
@@ -50,9 +56,17 @@ impl Compare {
                 anstream::println!("{}", render::cross_validation(validation));
             }
         }
+        if let Some(path) = &self.report {
+            write_report(path, &model, &campaign)?;
+        }
         let exceeded = self.fail_above.is_some_and(|limit_ug| comparison.residual_ug > limit_ug);
         Ok(if exceeded { Answer::No } else { Answer::Yes })
     }
+}
+
+fn write_report(path: &Path, model: &Model, campaign: &Campaign) -> Result<(), Failure> {
+    let html = html(&report(model, campaign)?).map_err(Failure::new)?;
+    std::fs::write(path, html).map_err(|error| Failure::io(path, &error))
 }
 
 /// Fewer restarts than a training: dozens of trainings are made, and the median restart is as good for this.

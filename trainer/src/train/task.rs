@@ -118,7 +118,7 @@ impl<'a> Task<'a> {
         };
         Provenance {
             made_by: concat!("tempco ", env!("CARGO_PKG_VERSION")).to_owned(),
-            campaign: campaign.sha256.iter().map(|byte| format!("{byte:02x}")).collect(),
+            campaign: campaign.hash(),
             method: self.settings.method.name().to_owned(),
             seed: self.settings.seed,
             restarts: self.settings.restarts,
