@@ -7,7 +7,7 @@ mod samples;
 mod thin;
 
 pub use chart::{Axis, AxisName, Chart, Layer, Scale, Tone};
-pub use samples::{RunName, Sample};
+pub use samples::{RunName, Sample, samples};
 
 use crate::campaign::Campaign;
 use crate::compare::{Comparison, compare, unseen};
@@ -36,7 +36,7 @@ pub fn report(model: &Model, campaign: &Campaign) -> Result<Report, ResidualErro
     let residuals = residuals(model, &campaign.runs)?;
     let held_out = |run: &crate::campaign::Run| unseen(model, &campaign, run);
     let runs: Vec<RunName> = campaign.runs.iter().map(|run| RunName::of(run, held_out(run))).collect();
-    let samples = samples::samples(&residuals);
+    let samples = samples(&residuals);
     let charts = residual_charts::residual_charts(&runs, &samples);
     Ok(Report { comparison, runs, charts })
 }

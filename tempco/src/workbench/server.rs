@@ -58,6 +58,7 @@ fn router(guard: Guard, bench: Arc<Bench>) -> Router {
         .route("/api/effects", get(verb::effects::answer))
         .route("/api/events", get(events::answer))
         .route("/api/samples", get(samples::answer))
+        .route("/api/chosen", post(samples::chosen))
         .route("/api/download", get(verb::export::download))
         .route("/api/upload", post(uploads::receive).layer(DefaultBodyLimit::disable()))
         .route("/api/load", action(verb::load::run))

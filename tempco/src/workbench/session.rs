@@ -14,6 +14,7 @@ use trainer::campaign::{Campaign, Split};
 use trainer::compare::{Comparison, compare};
 use trainer::diagnose::Diagnosis;
 use trainer::diagnose::plan::Plan;
+use trainer::linked::Columns;
 use trainer::model::Model;
 use trainer::residuals::{arranged, residuals};
 
@@ -80,6 +81,8 @@ pub struct Entry {
     pub comparison: Comparison,
     /// Row by row in the campaign's order, µg.
     pub residuals_ug: Arc<Vec<f32>>,
+    /// What they may depend on.
+    pub columns: Arc<Columns>,
     pub simpler: Vec<Simpler>,
     pub ladder: Vec<Rung>,
     pub diagnosis: Option<Arc<Diagnosis>>,
@@ -134,6 +137,7 @@ impl Entry {
         let Origin { file, parent, title, command } = origin;
         let arranged = arranged(&model, campaign).map_err(Failure::from)?;
         let residuals = residuals(&model, &arranged.runs)?;
+        let columns = Columns::of(&residuals);
         let residuals_ug = residuals.runs.iter().flat_map(|run| &run.residuals_g).map(|g| (g * 1e6) as f32).collect();
         Ok(Self {
             number: 0,
@@ -144,6 +148,7 @@ impl Entry {
             model: Arc::new(model),
             comparison,
             residuals_ug: Arc::new(residuals_ug),
+            columns: Arc::new(columns),
             simpler: Vec::new(),
             ladder: Vec::new(),
             diagnosis: None,
@@ -214,7 +219,9 @@ impl Session {
     /// A new model, which is looked at from now on.
     pub fn add(&mut self, entry: Entry) {
         let number = self.models.last().map_or(1, |last| last.number + 1);
-        self.models.push(Entry { number, ..entry });
+        // Every model sees the same samples: once is enough.
+        let columns = self.models.first().map_or_else(|| Arc::clone(&entry.columns), |first| Arc::clone(&first.columns));
+        self.models.push(Entry { number, columns, ..entry });
         self.current = Some(number);
     }
 

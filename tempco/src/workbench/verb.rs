@@ -27,15 +27,15 @@ pub struct OfModel {
     model: usize,
 }
 
-fn measured(session: &Session) -> Result<&Measured, Refusal> {
+pub fn measured(session: &Session) -> Result<&Measured, Refusal> {
     session.measured.as_ref().ok_or_else(|| missing("there is no campaign yet", "drop a CSV file on the page"))
 }
 
-fn entry(session: &Session, number: usize) -> Result<&Entry, Refusal> {
+pub fn entry(session: &Session, number: usize) -> Result<&Entry, Refusal> {
     let found = session.models.iter().find(|entry| entry.number == number);
     found.ok_or_else(|| missing("there is no such model", "train one first"))
 }
 
-fn missing(what: &str, help: &str) -> Refusal {
+pub fn missing(what: &str, help: &str) -> Refusal {
     Refusal { status: StatusCode::CONFLICT, failure: Failure::new(what).help(help) }
 }

@@ -54,7 +54,7 @@ async function update(state, ui, choose) {
   shown = { key };
   const data = unpack(await bytes(`/api/samples?models=${models}`));
   if (shown.key !== key) return;
-  shown = { key, models, data, ...seen(data, ui.runs) };
+  shown = { key, models, data, runs: ui.runs, ...seen(data, ui.runs) };
   draw();
   clear();
 }
@@ -158,7 +158,12 @@ function chosen({ column, log }, { x, y }) {
 async function tell() {
   const { plot, x, y } = brush;
   const column = plot.axis.column;
-  const request = { models: shown.models, ranges: [{ column, low: x[0], high: x[1] }, { column: "residual_ug", low: y[0], high: y[1] }] };
+  // What is drawn at the edge of a logarithm lies beyond it.
+  const low = plot.axis.log && x[0] <= plot.xRange[0] * 1.001 ? null : x[0];
+  const request = {
+    models: shown.models, held_out: shown.runs ? shown.runs === "held-out" : null,
+    ranges: [{ column, low, high: x[1] }, { column: "residual_ug", low: y[0], high: y[1] }],
+  };
   const found = await answer("chosen", request).catch(() => undefined);
   if (!found || !brush || brush.plot !== plot || brush.x !== x) return;
   const each = found.models.map(({ rms_ug: rms, mean_ug: mean }, k) =>

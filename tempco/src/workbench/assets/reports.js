@@ -78,22 +78,22 @@ function drawCurves(target) {
   const all = [...stage.curves.values()].filter(({ x }) => x.length > 1);
   if (!all.length) return;
   const lowest = ({ y }) => Math.min(...y);
-  const best = all.reduce((a, b) => (lowest(b) < lowest(a) ? b : a));
   const line = (tone, name) => ({ x, y }, k) => ({ mark: "line", name: k === 0 ? name : "", tone, x, y, dashed: false });
-  const first = all.filter((one) => one.index < stage.restarts && one !== best);
-  const further = all.filter((one) => one.index >= stage.restarts && one !== best);
+  const first = all.filter((one) => one.index < stage.restarts);
+  const further = all.filter((one) => one.index >= stage.restarts);
+  const best = first.length ? [first.reduce((a, b) => (lowest(b) < lowest(a) ? b : a))] : [];
   const top = Math.max(...all.map(({ y }) => y[Math.min(y.length - 1, 2)]));
   const chart = {
     id: "curves", title: "Residual of every restart while it trains",
     caption: "Each thin line is one restart; none can fall below the noise from sample to sample.",
-    x: { label: "iteration", unit: "", scale: "linear", range: [0, Math.max(10, ...all.map(({ x }) => x.at(-1)))] },
+    x: { label: "iteration", unit: "", scale: "log", range: [1, Math.max(10, ...all.map(({ x }) => x.at(-1)))] },
     y: { label: "residual on the training runs", unit: "µg", scale: "log", range: [stage.noise * 0.7, Math.max(top, stage.noise * 4) * 1.2] },
     layers: [
-      ...first.map(line("quiet", "restarts")), ...further.map(line("third", "the best, trained on")), line("first", "best so far")(best, 0),
+      ...first.map(line("quiet", "restarts")), ...best.map(line("first", "the best of them")), ...further.map(line("third", "the best, trained on")),
       { mark: "rule", name: `noise from sample to sample ${ug(stage.noise)}`, axis: "y", at: stage.noise },
     ],
   };
-  globalThis.charts.draw(target, chart, { runs: [], width: 860, height: 300 });
+  globalThis.charts.draw(target, chart, { runs: [], width: 620, height: 300 });
 }
 
 export function drawRungs(target, found) {

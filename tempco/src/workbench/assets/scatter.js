@@ -4,7 +4,7 @@
 import { make } from "./dom.js";
 
 const { element, scale } = globalThis.charts;
-const ROOM = { left: 52, right: 10, top: 8, bottom: 34 };
+const ROOM = { left: 52, right: 10, top: 14, bottom: 34 };
 const FAINT = 0.5;
 
 // axis: { column, title, unit, log, height }
@@ -114,13 +114,15 @@ export class Scatter {
       grid.append(element("line", { x1: x.at(value), x2: x.at(value), y1: inner.bottom, y2: inner.bottom + 4 }),
         element("text", { x: x.at(value), y: inner.bottom + 16, "text-anchor": "middle" }, text));
     }
-    for (const { value, text } of y.ticks) {
+    // Twice as many ticks as a chart of this height would have: these are low.
+    for (const { value, text } of scale({ scale: "linear", range: this.yRange }, [0, 2 * (inner.bottom - inner.top)]).ticks) {
       grid.append(element("line", { x1: inner.left, x2: inner.right, y1: y.at(value), y2: y.at(value), class: value === 0 ? "zero" : "" }),
         element("text", { x: inner.left - 6, y: y.at(value) + 4, "text-anchor": "end" }, text));
     }
     this.brushed = element("rect", { class: "selection", visibility: "hidden" });
     svg.replaceChildren(grid, this.brushed,
-      element("text", { class: "unit", x: inner.right, y: height - 4, "text-anchor": "end" }, this.axis.unit));
+      element("text", { class: "unit", x: inner.right, y: height - 4, "text-anchor": "end" }, this.axis.unit),
+      element("text", { class: "unit", x: inner.left - 6, y: inner.top - 4, "text-anchor": "end" }, "µg"));
     for (const canvas of [this.base, this.lit]) {
       Object.assign(canvas.style, {
         left: `${inner.left}px`, top: `${inner.top}px`, width: `${inner.right - inner.left}px`, height: `${inner.bottom - inner.top}px`,

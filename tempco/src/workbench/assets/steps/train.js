@@ -14,7 +14,11 @@ export function summary({ models }) {
 
 export function render(state, _model, context) {
   if (!state.campaign) return [make("p", { class: "empty" }, "Load a campaign first.")];
-  return [split(state, context), options(state, context), make("div", { id: "curves", class: "curves", hidden: true }), ...outcome(state)];
+  const { words, made } = outcome(state);
+  return [
+    split(state, context), options(state, context),
+    make("div", { class: "beside" }, make("div", { id: "curves", class: "curves", hidden: true }), words), made,
+  ];
 }
 
 function split(state, context) {
@@ -30,12 +34,17 @@ function split(state, context) {
         send([...held]);
       },
     }), make("span", {}, run.run), make("span", { class: "kind" }, run.kind));
-  return make("fieldset", { class: "split" },
-    make("legend", {}, "Runs that judge the model: no training ever sees them"),
-    make("p", { class: "note" }, `${campaign.split_refused?.message ?? campaign.basis ?? ""} `,
-      campaign.hold_out ? button("The usual choice", { class: "button tiny quiet", id: "usual-split", onclick: () => send(null) }) : undefined),
-    make("div", { class: "scroll run-choices", id: "run-choices" }, campaign.runs.map(box)));
+  const names = [...held];
+  const shown = names.length > 8 ? `${names.slice(0, 7).join(", ")} and ${names.length - 7} more` : names.join(", ") || "none";
+  return make("details", { id: "split", class: "split", open: !state.models.length },
+    make("summary", {}, make("span", { class: "strong" }, `Held out: ${names.length} of ${campaign.runs.length} runs`), ` · ${shown}`),
+    make("fieldset", {},
+      make("legend", { class: "note" }, "These runs judge the model: no training ever sees them. ", sentence(campaign.split_refused?.message ?? campaign.basis ?? "")),
+      campaign.hold_out ? button("The usual choice", { class: "button tiny quiet", id: "usual-split", onclick: () => send(null) }) : undefined,
+      make("div", { class: "scroll run-choices", id: "run-choices" }, campaign.runs.map(box))));
 }
+
+const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}.` : "");
 
 function options(state, context) {
   const { typed } = context.ui;
@@ -58,9 +67,9 @@ function options(state, context) {
 }
 
 function outcome(state) {
-  if (state.job?.step === "train") return [command(state.job.command)];
+  if (state.job?.step === "train") return { made: command(state.job.command) };
   const trained = state.models.findLast((one) => one.parent === null);
-  if (!trained) return [];
+  if (!trained) return {};
   const { comparison, simpler } = trained;
   const where = comparison.held_out ? "on runs that the training never saw" : "on the training runs";
   const list = make("ol", { class: "ladder" });
@@ -70,10 +79,9 @@ function outcome(state) {
   const polynomial = simpler.filter((one) => one.model.startsWith("polynomial")).map((one) => ({ effect: one.model, residual_ug: one.residual_ug, tone: "fifth" }));
   drawRungs(list, [...polynomial, { effect: "network", residual_ug: comparison.residual_ug, tone: "first" }, noise].filter((rung) => rung.residual_ug !== null));
   const raw = simpler.find((one) => one.model.startsWith("a line"));
-  return [
+  const words = make("div", { class: "outcome" },
     make("p", { class: "answer" }, make("strong", {}, ug(comparison.residual_ug)), ` RMS ${where}`,
       raw ? `; a straight line through the raw frequency leaves ${ug(raw.residual_ug)}.` : "."),
-    list,
-    command(trained.commands.made_by),
-  ];
+    list);
+  return { words, made: command(trained.commands.made_by) };
 }
