@@ -158,7 +158,8 @@ impl Columns {
     ) -> Chosen {
         let wanted: Vec<bool> = campaign.runs.iter().map(|run| wanted(&run.name)).collect();
         let run_of = |row: usize| self.values[RUN][row] as usize;
-        let within: Vec<(&[f32], f32, f32)> = ranges.iter().filter_map(|range| self.limits(range, residuals_ug)).collect();
+        let within: Vec<(&[f32], f32, f32)> =
+            ranges.iter().filter_map(|range| self.limits(range, residuals_ug)).collect();
         let is_wanted = |row: &usize| wanted.get(run_of(*row)).copied().unwrap_or(false);
         let rows: Vec<usize> = (0..self.len()).filter(is_wanted).collect();
         let is_within = |row: &&usize| within.iter().all(|(values, low, high)| (*low..=*high).contains(&values[**row]));
@@ -192,7 +193,10 @@ impl Figures {
     fn of(residuals_ug: &[f32], rows: &[usize]) -> Self {
         let values = || rows.iter().map(|row| f64::from(residuals_ug[*row]));
         let count = rows.len().max(1) as f64;
-        Self { rms_ug: (values().map(|ug| ug * ug).sum::<f64>() / count).sqrt(), mean_ug: values().sum::<f64>() / count }
+        Self {
+            rms_ug: (values().map(|ug| ug * ug).sum::<f64>() / count).sqrt(),
+            mean_ug: values().sum::<f64>() / count,
+        }
     }
 }
 
@@ -220,7 +224,11 @@ mod tests {
     fn campaign(rows: usize) -> Campaign {
         let row = |k: usize| {
             let (time_us, temperature_uc) = (k as u64 * 60_000_000, k as i32 * 1_000_000);
-            Row { sample: Sample::from_difference(time_us, 0, temperature_uc), reference_g: 0.0, reference_sigma_g: None }
+            Row {
+                sample: Sample::from_difference(time_us, 0, temperature_uc),
+                reference_g: 0.0,
+                reference_sigma_g: None,
+            }
         };
         let run = |name: &str| Run {
             name: name.to_owned(),

@@ -2,9 +2,8 @@
 
 /// Watches a training and may end it.
 pub trait Progress: Sync {
-    /// Called before restarts begin, more than once where a training first makes a simpler model. Noise from sample to
-    /// sample, g, is what no residual falls below.
-    fn begins(&self, _restarts: usize, _noise_g: f64) {}
+    /// Called before restarts begin, so many of them; more than once where a training first makes a simpler model.
+    fn begins(&self, _restarts: usize) {}
 
     /// Called as restarts advance, from several threads. Those beyond the number that began go on from the best.
     fn restart(&self, _news: RestartNews) {}
@@ -24,6 +23,9 @@ pub struct RestartNews {
     pub iteration: usize,
     /// RMS residual on the training runs so far, g.
     pub residual_g: f64,
+    /// What noise from sample to sample leaves of that at least, g, where it is known. Samples of one state are averaged,
+    /// so that it is less than the noise of one sample.
+    pub noise_g: Option<f64>,
     /// Whether this restart has ended.
     pub done: bool,
 }

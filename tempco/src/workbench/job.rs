@@ -24,10 +24,10 @@ pub enum Step {
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Report {
-    /// Restarts begin; nothing falls below the noise.
-    Begins { restarts: usize, noise_ug: f64 },
-    /// One restart's curve goes on. Each curve has its own number.
-    Restart { curve: usize, index: usize, iteration: usize, residual_ug: f64, done: bool },
+    /// Restarts begin.
+    Begins { restarts: usize },
+    /// One restart's curve goes on. Each curve has its own number; noise is what it can fall to.
+    Restart { curve: usize, index: usize, iteration: usize, residual_ug: f64, noise_ug: Option<f64>, done: bool },
     /// A rung of the ladder is reached.
     Rung { effect: String, residual_ug: f64 },
     /// So much of it is done, 0 to 1.
@@ -94,12 +94,12 @@ impl Job {
 }
 
 impl Progress for Job {
-    fn begins(&self, restarts: usize, noise_g: f64) {
+    fn begins(&self, restarts: usize) {
         self.told().curves.clear();
-        self.tell(Report::Begins { restarts, noise_ug: noise_g * 1e6 });
+        self.tell(Report::Begins { restarts });
     }
 
-    fn restart(&self, RestartNews { index, iteration, residual_g, done }: RestartNews) {
+    fn restart(&self, RestartNews { index, iteration, residual_g, noise_g, done }: RestartNews) {
         let mut told = self.told();
         let next = told.drawn;
         let curve = *told.curves.entry(index).or_insert(next);
@@ -108,7 +108,8 @@ impl Progress for Job {
             told.curves.remove(&index);
         }
         drop(told);
-        self.tell(Report::Restart { curve, index, iteration, residual_ug: residual_g * 1e6, done });
+        let (residual_ug, noise_ug) = (residual_g * 1e6, noise_g.map(|noise_g| noise_g * 1e6));
+        self.tell(Report::Restart { curve, index, iteration, residual_ug, noise_ug, done });
     }
 
     fn cancelled(&self) -> bool {
@@ -123,12 +124,12 @@ mod tests {
     #[test]
     fn each_descent_has_a_curve_of_its_own() {
         let job = Job::new(1, Step::Train, String::new(), String::new(), watch::channel(0).0);
-        let news = |index, iteration, done| RestartNews { index, iteration, residual_g: 1e-6, done };
-        job.begins(2, 5e-6);
+        let news = |index, iteration, done| RestartNews { index, iteration, residual_g: 1e-6, noise_g: None, done };
+        job.begins(2);
         for (index, iteration, done) in [(0, 1, false), (1, 1, false), (0, 2, true), (0, 1, false), (1, 2, true)] {
             job.restart(news(index, iteration, done));
         }
-        job.begins(2, 5e-6);
+        job.begins(2);
         job.restart(news(0, 1, false));
         let curves: Vec<usize> = job
             .reports(0)

@@ -99,7 +99,8 @@ pub async fn chosen(State(bench): State<Arc<Bench>>, body: Bytes) -> Response {
     let looked = Looked::at(&bench.session(), &choice.models);
     let counted = tokio::task::spawn_blocking(move || {
         let looked = looked?;
-        let is = |name: &str| looked.runs.iter().any(|(run, _, held_out)| run == name && Some(*held_out) == choice.held_out);
+        let is =
+            |name: &str| looked.runs.iter().any(|(run, _, held_out)| run == name && Some(*held_out) == choice.held_out);
         let wanted = |name: &str| choice.held_out.is_none() || is(name);
         Ok::<_, Refusal>(looked.columns.chosen(&looked.campaign, &looked.residuals(), &choice.ranges, wanted))
     });

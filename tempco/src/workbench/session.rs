@@ -220,7 +220,8 @@ impl Session {
     pub fn add(&mut self, entry: Entry) {
         let number = self.models.last().map_or(1, |last| last.number + 1);
         // Every model sees the same samples: once is enough.
-        let columns = self.models.first().map_or_else(|| Arc::clone(&entry.columns), |first| Arc::clone(&first.columns));
+        let columns =
+            self.models.first().map_or_else(|| Arc::clone(&entry.columns), |first| Arc::clone(&first.columns));
         self.models.push(Entry { number, columns, ..entry });
         self.current = Some(number);
     }

@@ -32,9 +32,14 @@ async function ask(path, options = {}) {
 
 export const read = async (path) => (await ask(path)).json();
 export const bytes = async (path) => (await ask(path)).arrayBuffer();
-export const act = (verb, request = {}) => ask(`/api/${verb}`, { method: "POST", body: JSON.stringify(request) });
-export const answer = async (verb, request) => (await act(verb, request)).json();
-export const upload = (file) => ask(`/api/upload?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file });
+const send = (path, body) => ask(path, { method: "POST", body });
+// An answer that nobody reads counts as broken off.
+const heard = async (response) => {
+  await (await response).text();
+};
+export const act = (verb, request = {}) => heard(send(`/api/${verb}`, JSON.stringify(request)));
+export const answer = async (verb, request) => (await send(`/api/${verb}`, JSON.stringify(request))).json();
+export const upload = (file) => heard(send(`/api/upload?name=${encodeURIComponent(file.name)}`, file));
 
 // Saves what the server sends under the name that it gives it.
 export async function save(path) {
@@ -58,7 +63,9 @@ export async function listen(onEvent, onLine) {
       // The next round says whether it is back.
     }
     onLine(false);
-    await new Promise((resume) => { setTimeout(resume, 1500); });
+    await new Promise((resume) => {
+      setTimeout(resume, 1500);
+    });
   }
 }
 
@@ -72,7 +79,12 @@ async function events(reader, onEvent) {
     const parts = text.split("\n\n");
     text = parts.pop();
     for (const part of parts) {
-      const field = (name) => part.split("\n").find((line) => line.startsWith(`${name}:`))?.slice(name.length + 1).trim();
+      const field = (name) =>
+        part
+          .split("\n")
+          .find((line) => line.startsWith(`${name}:`))
+          ?.slice(name.length + 1)
+          .trim();
       if (field("event")) onEvent(field("event"), JSON.parse(field("data")));
     }
   }

@@ -27,7 +27,9 @@ let ticking;
 
 const context = {
   ui,
-  get effects() { return effects; },
+  get effects() {
+    return effects;
+  },
   // Asks the server for something; why it would not is shown where everybody looks.
   async act(verb, request) {
     refuse(undefined);
@@ -65,10 +67,13 @@ function go(step) {
 }
 
 function refuse(refusal) {
-  find("refusal").replaceChildren(...(refusal ? [
-    make("p", { class: "message" }, refusal.message),
-    refusal.help && make("p", { class: "help" }, refusal.help),
-  ].filter(Boolean) : []));
+  find("refusal").replaceChildren(
+    ...(refusal
+      ? [make("p", { class: "message" }, refusal.message), refusal.help && make("p", { class: "help" }, refusal.help)].filter(
+          Boolean,
+        )
+      : []),
+  );
 }
 
 function draw() {
@@ -77,11 +82,17 @@ function draw() {
   if (!state.models.some((one) => one.number === ui.against)) ui.against = undefined;
   drawSteps(model);
   const panel = find("panel");
-  keepFocus(panel, () => panel.replaceChildren(
-    make("h1", { id: "panel-title" }, ui.step.title), ...ui.step.render(state, model, context).flat(Infinity).filter(Boolean)));
+  keepFocus(panel, () =>
+    panel.replaceChildren(
+      make("h1", { id: "panel-title" }, ui.step.title),
+      ...ui.step.render(state, model, context).flat(Infinity).filter(Boolean),
+    ),
+  );
   reports.attach(state);
   drawActivity();
-  find("subject").textContent = state.campaign ? `${state.campaign.files.join(", ")}${model ? ` · model ${model.number}` : ""}` : "";
+  find("subject").textContent = state.campaign
+    ? `${state.campaign.files.join(", ")}${model ? ` · model ${model.number}` : ""}`
+    : "";
   guide.update(state, context);
   linked.update(state, ui, choose).catch((refusal) => refuse(refusal));
 }
@@ -106,16 +117,31 @@ function drawSteps(model) {
   const list = find("steps");
   const focused = document.activeElement?.id;
   const busy = state.job && SHOWN_BY[state.job.step];
-  list.replaceChildren(...STEPS.map((step) => {
-    const { done, text } = step.summary(state, model);
-    const mark = busy === step ? "busy" : done ? "done" : "open";
-    const said = { busy: "at work", done: "done", open: "not done" }[mark];
-    return make("li", {}, make("button", {
-      type: "button", id: `step-${step.id}`, class: "step", "aria-current": ui.step === step ? "step" : undefined, onclick: () => go(step),
-    }, make("span", { class: `step-mark ${mark}`, "aria-hidden": "true" }),
-    make("span", { class: "step-name" }, step.name), make("span", { class: "visually-hidden" }, `, ${said}. `),
-    make("span", { class: "step-text" }, text ?? "")));
-  }));
+  list.replaceChildren(
+    ...STEPS.map((step) => {
+      const { done, text } = step.summary(state, model);
+      const mark = busy === step ? "busy" : done ? "done" : "open";
+      const said = { busy: "at work", done: "done", open: "not done" }[mark];
+      return make(
+        "li",
+        {},
+        make(
+          "button",
+          {
+            type: "button",
+            id: `step-${step.id}`,
+            class: "step",
+            "aria-current": ui.step === step ? "step" : undefined,
+            onclick: () => go(step),
+          },
+          make("span", { class: `step-mark ${mark}`, "aria-hidden": "true" }),
+          make("span", { class: "step-name" }, step.name),
+          make("span", { class: "visually-hidden" }, `, ${said}. `),
+          make("span", { class: "step-text" }, text ?? ""),
+        ),
+      );
+    }),
+  );
   if (focused?.startsWith("step-")) find(focused)?.focus();
 }
 

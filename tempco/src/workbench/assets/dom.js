@@ -21,17 +21,49 @@ export function bar(share, tone = "first") {
 }
 
 // A table; cells that are numbers are set to the right.
+const MOST_ROWS = 300;
 export function table(caption, header, rows) {
   const cell = (kind) => (value) => {
-    const figure = typeof value === "string" && /^[−+]?[\d\u202f.]+( .{0,4})?$/.test(value);
+    const figure = typeof value === "string" && /^(< )?[−+–]?[\d\u202f.]*( .{0,4})?$/.test(value);
     return make(kind, figure ? { class: "number" } : {}, value);
   };
-  return make("div", { class: "scroll" }, make("table", {},
-    caption && make("caption", {}, caption),
-    make("thead", {}, make("tr", {}, header.map((title) =>
-      (typeof title === "string" ? make("th", { scope: "col" }, title) : make("th", { scope: "col", class: "number" }, title.number))))),
-    make("tbody", {}, rows.map((row) => make("tr", row.properties ?? {},
-      make("th", { scope: "row" }, row.cells[0]), row.cells.slice(1).map(cell("td")))))));
+  return make(
+    "div",
+    { class: "scroll" },
+    make(
+      "table",
+      {},
+      caption && make("caption", {}, caption),
+      make(
+        "thead",
+        {},
+        make(
+          "tr",
+          {},
+          header.map((title) =>
+            typeof title === "string"
+              ? make("th", { scope: "col" }, title)
+              : make("th", { scope: "col", class: "number" }, title.number),
+          ),
+        ),
+      ),
+      make(
+        "tbody",
+        {},
+        rows
+          .slice(0, MOST_ROWS)
+          .map((row) =>
+            make("tr", row.properties ?? {}, make("th", { scope: "row" }, row.cells[0]), row.cells.slice(1).map(cell("td"))),
+          ),
+      ),
+      rows.length > MOST_ROWS &&
+        make(
+          "tfoot",
+          {},
+          make("tr", {}, make("td", { colspan: header.length }, `and ${rows.length - MOST_ROWS} more; the command prints all`)),
+        ),
+    ),
+  );
 }
 
 export function button(text, properties = {}) {
@@ -53,11 +85,14 @@ export const ug = (value, digits = value >= 1000 ? 0 : value >= 100 ? 1 : 2) => 
 export function command(line, label = "The same on the command line") {
   if (!line) return undefined;
   const copy = button("Copy", {
-    class: "button tiny quiet", "aria-label": `Copy: ${line}`,
+    class: "button tiny quiet",
+    "aria-label": `Copy: ${line}`,
     onclick: async () => {
       await navigator.clipboard?.writeText(line).catch(() => undefined);
       copy.textContent = "Copied";
-      setTimeout(() => { copy.textContent = "Copy"; }, 1500);
+      setTimeout(() => {
+        copy.textContent = "Copy";
+      }, 1500);
     },
   });
   return make("div", { class: "command" }, make("span", { class: "command-label" }, label), make("code", {}, line), copy);

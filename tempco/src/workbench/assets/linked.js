@@ -31,9 +31,16 @@ let pending;
 section.append(
   make("div", { class: "section-head" }, make("h2", { id: "linked-title" }, "Residuals"), controls),
   make("div", { class: "section-line" }, legend, words),
-  make("p", { id: "brush-help", class: "visually-hidden" },
-    "Drag over samples to choose them, or press Enter and use the arrow keys; Shift and arrow widen, Escape ends."),
-  make("div", { class: "scatters" }, plots.map((plot) => plot.figure)),
+  make(
+    "p",
+    { id: "brush-help", class: "visually-hidden" },
+    "Drag over samples to choose them, or press Enter and use the arrow keys; Shift and arrow widen, Escape ends.",
+  ),
+  make(
+    "div",
+    { class: "scatters" },
+    plots.map((plot) => plot.figure),
+  ),
   decimated,
 );
 
@@ -88,18 +95,25 @@ function draw() {
   const both = residuals.length > 1;
   const classes = Uint8Array.from(columns.rate_c_per_min, (rate) => (rate > STILL ? 2 : rate < -STILL ? 1 : 0));
   const series = both
-    ? [{ ys: residuals[0], classes: new Uint8Array(classes.length) }, { ys: residuals[1], classes: new Uint8Array(classes.length).fill(3) }]
+    ? [
+        { ys: residuals[1], classes: new Uint8Array(classes.length) },
+        { ys: residuals[0], classes: new Uint8Array(classes.length).fill(1) },
+      ]
     : [{ ys: residuals[0], classes }];
-  const palette = ["quiet", "first", "second", "third"].map(colour);
+  const palette = ["quiet", "first", "second"].map(colour);
   const yRange = span(residuals);
   for (const plot of plots) {
-    const bands = plot.axis.column === "time_h" ? data.runs.map(({ name, from_h: from, to_h: to, held_out: held }) => ({ name, from, to, held })) : [];
+    const bands =
+      plot.axis.column === "time_h"
+        ? data.runs.map(({ name, from_h: from, to_h: to, held_out: held }) => ({ name, from, to, held }))
+        : [];
     plot.show({ xs: columns[plot.axis.column], series, yRange, palette, bands });
   }
-  drawLegend(both, palette);
-  decimated.textContent = data.kept < data.rows
-    ? `${count(data.kept)} of ${count(data.rows)} samples are drawn: of each ${data.stride} that follow each other the lowest and the highest. Figures are of all.`
-    : "";
+  drawLegend(both);
+  decimated.textContent =
+    data.kept < data.rows
+      ? `${count(data.kept)} of ${count(data.rows)} samples are drawn: of each ${data.stride} that follow each other the lowest and the highest. Figures are of all.`
+      : "";
 }
 
 function span(residuals) {
@@ -125,10 +139,12 @@ function colour(name) {
 function drawLegend(both) {
   const entry = (tone, text) => make("li", {}, make("span", { class: `key-dot tone-${tone}` }), text);
   const [first, second] = shown.models;
-  legend.replaceChildren(...(both
-    ? [entry("quiet", `model ${first}`), entry("third", `model ${second}`)]
-    : [entry("second", "temperature rising"), entry("first", "falling"), entry("quiet", "still")]),
-  make("li", {}, make("span", { class: "key-held" }), "held out"));
+  legend.replaceChildren(
+    ...(both
+      ? [entry("first", `model ${first}`), entry("quiet", `model ${second}`)]
+      : [entry("second", "temperature rising"), entry("first", "falling"), entry("quiet", "still")]),
+    make("li", {}, make("span", { class: "key-held" }), "held out"),
+  );
 }
 
 function brushed(plot, region, since) {
@@ -144,7 +160,10 @@ function brushed(plot, region, since) {
 }
 
 function chosen({ column, log }, { x, y }) {
-  const { columns, residuals: [residual] } = shown;
+  const {
+    columns,
+    residuals: [residual],
+  } = shown;
   const values = columns[column];
   const mask = new Uint8Array(residual.length);
   for (let k = 0; k < mask.length; k += 1) {
@@ -161,13 +180,19 @@ async function tell() {
   // What is drawn at the edge of a logarithm lies beyond it.
   const low = plot.axis.log && x[0] <= plot.xRange[0] * 1.001 ? null : x[0];
   const request = {
-    models: shown.models, held_out: shown.runs ? shown.runs === "held-out" : null,
-    ranges: [{ column, low, high: x[1] }, { column: "residual_ug", low: y[0], high: y[1] }],
+    models: shown.models,
+    held_out: shown.runs ? shown.runs === "held-out" : null,
+    ranges: [
+      { column, low, high: x[1] },
+      { column: "residual_ug", low: y[0], high: y[1] },
+    ],
   };
   const found = await answer("chosen", request).catch(() => undefined);
   if (!found || !brush || brush.plot !== plot || brush.x !== x) return;
-  const each = found.models.map(({ rms_ug: rms, mean_ug: mean }, k) =>
-    `${found.models.length > 1 ? `model ${shown.models[k]}: ` : ""}${ug(rms)} RMS, mean ${mean > 0 ? "+" : ""}${ug(mean)}`);
+  const each = found.models.map(
+    ({ rms_ug: rms, mean_ug: mean }, k) =>
+      `${found.models.length > 1 ? `model ${shown.models[k]}: ` : ""}${ug(rms)} RMS, mean ${mean > 0 ? "+" : ""}${ug(mean)}`,
+  );
   const named = found.runs.slice(0, NAMED_RUNS).map(({ run, samples }) => `${run} (${count(samples)})`);
   const rest = found.runs.length - named.length;
   words.textContent = found.samples
@@ -186,16 +211,49 @@ function clear() {
 
 function drawControls(state, ui, model, choose) {
   const others = state.models.filter((one) => one.number !== model.number);
-  const pick = (id, label, value, options, onchange) => make("label", { class: "field inline" }, label,
-    make("select", { id, onchange: (event) => onchange(event.target.value) },
-      options.map(([key, text]) => make("option", { value: key, selected: String(key) === String(value ?? "") }, text))));
+  const pick = (id, label, value, options, onchange) =>
+    make(
+      "label",
+      { class: "field inline" },
+      label,
+      make(
+        "select",
+        { id, onchange: (event) => onchange(event.target.value) },
+        options.map(([key, text]) => make("option", { value: key, selected: String(key) === String(value ?? "") }, text)),
+      ),
+    );
   const focused = document.activeElement?.id;
   const title = (one) => `${one.number} · ${one.title} (${fixed(one.comparison.residual_ug)} µg)`;
   controls.replaceChildren(
-    pick("linked-model", "Model", model.number, state.models.map((one) => [one.number, title(one)]), (value) => choose.model(Number(value))),
-    ...(others.length ? [pick("linked-against", "with", ui.against, [["", "no other"], ...others.map((one) => [one.number, title(one)])],
-      (value) => choose.against(Number(value) || undefined))] : []),
-    pick("linked-runs", "Runs", ui.runs, [["", "all"], ["held-out", "held out"], ["training", "training"]], (value) => choose.runs(value || undefined)),
+    pick(
+      "linked-model",
+      "Model",
+      model.number,
+      state.models.map((one) => [one.number, title(one)]),
+      (value) => choose.model(Number(value)),
+    ),
+    ...(others.length
+      ? [
+          pick(
+            "linked-against",
+            "with",
+            ui.against,
+            [["", "no other"], ...others.map((one) => [one.number, title(one)])],
+            (value) => choose.against(Number(value) || undefined),
+          ),
+        ]
+      : []),
+    pick(
+      "linked-runs",
+      "Runs",
+      ui.runs,
+      [
+        ["", "all"],
+        ["held-out", "held out"],
+        ["training", "training"],
+      ],
+      (value) => choose.runs(value || undefined),
+    ),
   );
   if (focused?.startsWith("linked-")) document.getElementById(focused)?.focus();
 }

@@ -25,13 +25,13 @@ function take({ job: number, from, reports: told }) {
 }
 
 const TAKE = {
-  begins(into, { restarts, noise_ug: noise }) {
-    into.stages.push({ restarts, noise, curves: new Map() });
+  begins(into, { restarts }) {
+    into.stages.push({ restarts, curves: new Map() });
   },
-  restart(into, { curve, index, iteration, residual_ug: residual, done }) {
+  restart(into, { curve, index, iteration, residual_ug: residual, noise_ug: noise, done }) {
     const stage = into.stages.at(-1);
     if (!stage) return;
-    if (!stage.curves.has(curve)) stage.curves.set(curve, { index, x: [], y: [], done: false });
+    if (!stage.curves.has(curve)) stage.curves.set(curve, { index, noise, x: [], y: [], done: false });
     const points = stage.curves.get(curve);
     points.x.push(iteration);
     points.y.push(residual);
@@ -78,19 +78,34 @@ function drawCurves(target) {
   const all = [...stage.curves.values()].filter(({ x }) => x.length > 1);
   if (!all.length) return;
   const lowest = ({ y }) => Math.min(...y);
-  const line = (tone, name) => ({ x, y }, k) => ({ mark: "line", name: k === 0 ? name : "", tone, x, y, dashed: false });
+  const line =
+    (tone, name) =>
+    ({ x, y }, k) => ({ mark: "line", name: k === 0 ? name : "", tone, x, y, dashed: false });
   const first = all.filter((one) => one.index < stage.restarts);
   const further = all.filter((one) => one.index >= stage.restarts);
   const best = first.length ? [first.reduce((a, b) => (lowest(b) < lowest(a) ? b : a))] : [];
+  const floors = [
+    ["noise floor", first.at(-1)?.noise],
+    ["noise floor of those", further.at(-1)?.noise],
+  ].filter(([, at], k, all_) => at && !(k && Math.abs(at / all_[0][1] - 1) < 0.1));
+  const least = Math.min(...floors.map(([, at]) => at), ...all.map(lowest));
   const top = Math.max(...all.map(({ y }) => y[Math.min(y.length - 1, 2)]));
   const chart = {
-    id: "curves", title: "Residual of every restart while it trains",
-    caption: "Each thin line is one restart; none can fall below the noise from sample to sample.",
+    id: "curves",
+    title: "Residual of every restart while it trains",
+    caption: "Each thin line is one restart. Samples of one state are averaged; what their noise leaves is the floor.",
     x: { label: "iteration", unit: "", scale: "log", range: [1, Math.max(10, ...all.map(({ x }) => x.at(-1)))] },
-    y: { label: "residual on the training runs", unit: "µg", scale: "log", range: [stage.noise * 0.7, Math.max(top, stage.noise * 4) * 1.2] },
+    y: {
+      label: "residual on the training runs",
+      unit: "µg",
+      scale: "log",
+      range: [least * 0.8, Math.max(top, least * 4) * 1.2],
+    },
     layers: [
-      ...first.map(line("quiet", "restarts")), ...best.map(line("first", "the best of them")), ...further.map(line("third", "the best, trained on")),
-      { mark: "rule", name: `noise from sample to sample ${ug(stage.noise)}`, axis: "y", at: stage.noise },
+      ...first.map(line("quiet", "restarts")),
+      ...best.map(line("first", "the best of them")),
+      ...further.map(line("third", "the best, trained on")),
+      ...floors.map(([name, at]) => ({ mark: "rule", name: `${name} ${ug(at)}`, axis: "y", at })),
     ],
   };
   globalThis.charts.draw(target, chart, { runs: [], width: 620, height: 300 });
@@ -98,7 +113,15 @@ function drawCurves(target) {
 
 export function drawRungs(target, found) {
   const highest = Math.max(...found.map((rung) => rung.residual_ug), 1e-9);
-  target.replaceChildren(...found.map(({ effect, residual_ug: residual, tone }, k) => make("li", { class: "rung" },
-    make("span", { class: "rung-name" }, k && !tone ? `+ ${effect}` : effect), bar(residual / highest, tone ?? "first"),
-    make("span", { class: "rung-value" }, ug(residual)))));
+  target.replaceChildren(
+    ...found.map(({ effect, residual_ug: residual, tone }, k) =>
+      make(
+        "li",
+        { class: "rung" },
+        make("span", { class: "rung-name" }, k && !tone ? `+ ${effect}` : effect),
+        bar(residual / highest, tone ?? "first"),
+        make("span", { class: "rung-value" }, ug(residual)),
+      ),
+    ),
+  );
 }

@@ -3,9 +3,12 @@
 
 import { make } from "./dom.js";
 
+// Written by the processor, pixel by pixel: a graphics card would only copy them back and forth.
+const WRITTEN = { willReadFrequently: true };
 const { element, scale } = globalThis.charts;
 const ROOM = { left: 52, right: 10, top: 14, bottom: 34 };
 const FAINT = 0.5;
+const LEAST_BAND = 4;
 
 // axis: { column, title, unit, log, height }
 export class Scatter {
@@ -15,10 +18,20 @@ export class Scatter {
     this.base = make("canvas", { class: "layer base" });
     this.lit = make("canvas", { class: "layer lit" });
     this.svg = element("svg", { class: "plot", "aria-hidden": "true" });
-    this.box = make("div", {
-      class: "scatter", tabindex: "0", role: "group", "aria-label": `Residual against ${axis.title}`, "aria-describedby": "brush-help",
-      "data-column": axis.column,
-    }, this.base, this.lit, this.svg);
+    this.box = make(
+      "div",
+      {
+        class: "scatter",
+        tabindex: "0",
+        role: "group",
+        "aria-label": `Residual against ${axis.title}`,
+        "aria-describedby": "brush-help",
+        "data-column": axis.column,
+      },
+      this.base,
+      this.lit,
+      this.svg,
+    );
     this.figure = make("figure", { class: axis.wide ? "wide" : "" }, make("h3", {}, axis.title), this.box);
     this.#listen();
     new ResizeObserver(() => this.layout()).observe(this.box);
@@ -60,7 +73,7 @@ export class Scatter {
     this.box.classList.toggle("dimmed", Boolean(mask));
     if (!this.inner) return;
     if (mask) this.#paint(this.lit, mask, 1);
-    else this.lit.getContext("2d").clearRect(0, 0, this.lit.width, this.lit.height);
+    else this.lit.getContext("2d", WRITTEN).clearRect(0, 0, this.lit.width, this.lit.height);
   }
 
   setBrush(brush) {
@@ -74,7 +87,9 @@ export class Scatter {
     const least = this.xRange[0];
     this.px = new Int32Array(xs.length);
     for (let k = 0; k < xs.length; k += 1) {
-      this.px[k] = Number.isNaN(xs[k]) ? -9 : Math.round((x.at(this.axis.log ? Math.max(least, xs[k]) : xs[k]) - inner.left) * dense);
+      this.px[k] = Number.isNaN(xs[k])
+        ? -9
+        : Math.round((x.at(this.axis.log ? Math.max(least, xs[k]) : xs[k]) - inner.left) * dense);
     }
     this.py = this.series.map(({ ys }) => {
       const py = new Int32Array(ys.length);
@@ -86,7 +101,7 @@ export class Scatter {
   #paint(canvas, mask, strength) {
     const { width, height } = canvas;
     if (!width || !height) return;
-    const context = canvas.getContext("2d");
+    const context = canvas.getContext("2d", WRITTEN);
     const image = context.createImageData(width, height);
     const size = Math.max(2, Math.round(1.7 * this.dense));
     this.series.forEach(({ classes }, which) => {
@@ -103,29 +118,57 @@ export class Scatter {
     const { x, y, inner, svg } = this;
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const grid = element("g", { class: "grid" });
+    // Borders that stand closer than this would only darken the plot.
+    const bordered = this.bands.length * LEAST_BAND < inner.right - inner.left;
     for (const { from, to, name, held } of this.bands) {
       const [left, right] = [x.at(from), x.at(to)];
-      if (held) grid.append(element("rect", { class: "held", x: left, width: Math.max(0.5, right - left), y: inner.top, height: inner.bottom - inner.top }));
-      grid.append(element("line", { class: "border", x1: left, x2: left, y1: inner.top, y2: inner.bottom }));
-      if (right - left > 7 * name.length) grid.append(element("text", { class: "run", x: (left + right) / 2, y: inner.top + 11, "text-anchor": "middle" }, name));
+      if (held)
+        grid.append(
+          element("rect", {
+            class: "held",
+            x: left,
+            width: Math.max(0.5, right - left),
+            y: inner.top,
+            height: inner.bottom - inner.top,
+          }),
+        );
+      if (bordered) grid.append(element("line", { class: "border", x1: left, x2: left, y1: inner.top, y2: inner.bottom }));
+      if (right - left > 7 * name.length)
+        grid.append(element("text", { class: "run", x: (left + right) / 2, y: inner.top + 11, "text-anchor": "middle" }, name));
     }
     const sparse = (ticks, room) => ticks.filter((_, k) => ticks.length * room < inner.right - inner.left || k % 2 === 0);
     for (const { value, text } of sparse(x.ticks, 34)) {
-      grid.append(element("line", { x1: x.at(value), x2: x.at(value), y1: inner.bottom, y2: inner.bottom + 4 }),
-        element("text", { x: x.at(value), y: inner.bottom + 16, "text-anchor": "middle" }, text));
+      grid.append(
+        element("line", { x1: x.at(value), x2: x.at(value), y1: inner.bottom, y2: inner.bottom + 4 }),
+        element("text", { x: x.at(value), y: inner.bottom + 16, "text-anchor": "middle" }, text),
+      );
     }
     // Twice as many ticks as a chart of this height would have: these are low.
     for (const { value, text } of scale({ scale: "linear", range: this.yRange }, [0, 2 * (inner.bottom - inner.top)]).ticks) {
-      grid.append(element("line", { x1: inner.left, x2: inner.right, y1: y.at(value), y2: y.at(value), class: value === 0 ? "zero" : "" }),
-        element("text", { x: inner.left - 6, y: y.at(value) + 4, "text-anchor": "end" }, text));
+      grid.append(
+        element("line", {
+          x1: inner.left,
+          x2: inner.right,
+          y1: y.at(value),
+          y2: y.at(value),
+          class: value === 0 ? "zero" : "",
+        }),
+        element("text", { x: inner.left - 6, y: y.at(value) + 4, "text-anchor": "end" }, text),
+      );
     }
     this.brushed = element("rect", { class: "selection", visibility: "hidden" });
-    svg.replaceChildren(grid, this.brushed,
+    svg.replaceChildren(
+      grid,
+      this.brushed,
       element("text", { class: "unit", x: inner.right, y: height - 4, "text-anchor": "end" }, this.axis.unit),
-      element("text", { class: "unit", x: inner.left - 6, y: inner.top - 4, "text-anchor": "end" }, "µg"));
+      element("text", { class: "unit", x: inner.left - 6, y: inner.top - 4, "text-anchor": "end" }, "µg"),
+    );
     for (const canvas of [this.base, this.lit]) {
       Object.assign(canvas.style, {
-        left: `${inner.left}px`, top: `${inner.top}px`, width: `${inner.right - inner.left}px`, height: `${inner.bottom - inner.top}px`,
+        left: `${inner.left}px`,
+        top: `${inner.top}px`,
+        width: `${inner.right - inner.left}px`,
+        height: `${inner.bottom - inner.top}px`,
       });
     }
   }
@@ -145,7 +188,10 @@ export class Scatter {
     const place = (event) => {
       const bounds = this.box.getBoundingClientRect();
       const within = (value, low, high) => Math.min(high, Math.max(low, value));
-      return [within(event.clientX - bounds.left, this.inner.left, this.inner.right), within(event.clientY - bounds.top, this.inner.top, this.inner.bottom)];
+      return [
+        within(event.clientX - bounds.left, this.inner.left, this.inner.right),
+        within(event.clientY - bounds.top, this.inner.top, this.inner.bottom),
+      ];
     };
     this.box.addEventListener("pointerdown", (event) => {
       if (event.button !== 0 || !this.inner) return;

@@ -14,14 +14,45 @@ export function summary(_state, model) {
 export function render(_state, model, context) {
   if (!model) return [make("p", { class: "empty" }, "Train a model first.")];
   const { exported } = model;
-  const download = (format, text) => button(text, { id: `download-${format}`, onclick: () => save(`/api/download?model=${model.number}&format=${format}`).catch(context.refuse) });
+  const download = (format, text) =>
+    button(text, {
+      id: `download-${format}`,
+      onclick: () => save(`/api/download?model=${model.number}&format=${format}`).catch(context.refuse),
+    });
   return [
-    make("p", {}, "Model and effects become one small block of bytes with a checksum. The microcontroller refuses it if a single bit is wrong, or if its arithmetic gave other bits than this computer’s."),
-    make("div", { class: "actions" }, button(exported ? "Export again" : "Export", {
-      id: "export", class: exported ? "button quiet" : "button primary", onclick: () => context.act("export", { model: model.number }),
-    })),
-    exported && make("p", { class: "answer" }, make("strong", {}, `${exported.bytes} bytes`), `, ${exported.address}, written to `, make("code", {}, exported.hex), " and ", make("code", {}, exported.bin), "."),
-    exported && make("div", { class: "actions" }, download("hex", "Download Intel HEX"), download("bin", "Download the bare blob"), download("toml", "Download the model file")),
+    make(
+      "p",
+      {},
+      "Model and effects become one small block of bytes with a checksum. The microcontroller refuses it if a single bit is wrong, or if its arithmetic gave other bits than this computer’s.",
+    ),
+    make(
+      "div",
+      { class: "actions" },
+      button(exported ? "Export again" : "Export", {
+        id: "export",
+        class: exported ? "button quiet" : "button primary",
+        onclick: () => context.act("export", { model: model.number }),
+      }),
+    ),
+    exported &&
+      make(
+        "p",
+        { class: "answer" },
+        make("strong", {}, `${exported.bytes} bytes`),
+        `, ${exported.address}, written to `,
+        make("code", {}, exported.hex),
+        " and ",
+        make("code", {}, exported.bin),
+        ".",
+      ),
+    exported &&
+      make(
+        "div",
+        { class: "actions" },
+        download("hex", "Download Intel HEX"),
+        download("bin", "Download the bare blob"),
+        download("toml", "Download the model file"),
+      ),
     command(model.commands.export),
   ];
 }

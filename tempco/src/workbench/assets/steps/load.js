@@ -18,43 +18,119 @@ export function render(state, _model, context) {
 
 function drop(context) {
   const input = make("input", {
-    type: "file", id: "files", multiple: true, accept: ".csv,.toml", class: "visually-hidden", onchange: ({ target }) => send([...target.files], context),
+    type: "file",
+    id: "files",
+    multiple: true,
+    accept: ".csv,.toml",
+    class: "visually-hidden",
+    onchange: ({ target }) => send([...target.files], context),
   });
   const map = make("input", {
-    type: "text", id: "map", placeholder: "delta_f_hz=FreqDiff, time_s=t_ms*0.001", value: context.ui.typed.map ?? "", spellcheck: "false",
-    oninput: ({ target }) => { context.ui.typed.map = target.value; },
+    type: "text",
+    id: "map",
+    placeholder: "delta_f_hz=FreqDiff, time_s=t_ms*0.001",
+    value: context.ui.typed.map ?? "",
+    spellcheck: "false",
+    oninput: ({ target }) => {
+      context.ui.typed.map = target.value;
+    },
   });
-  return make("div", { class: "drop" },
-    make("p", {}, make("strong", {}, "Drop CSV files here"), ", anywhere on the page, or ", make("label", { class: "button", for: "files" }, "choose files", input)),
-    make("p", { class: "note" }, "Units are in the column names: ", make("code", {}, "time_s, temperature_c, reference_g, delta_f_hz"),
-      " or ", make("code", {}, "f1_hz, f2_hz"), "; ", make("code", {}, "run"), " and ", make("code", {}, "kind"), " name the recordings."),
-    make("details", { id: "mapping" }, make("summary", {}, "The columns have other names"),
-      make("label", { class: "field" }, "Ours = theirs, separated by commas", map)));
+  return make(
+    "div",
+    { class: "drop" },
+    make(
+      "p",
+      {},
+      make("strong", {}, "Drop CSV files here"),
+      ", anywhere on the page, or ",
+      make("label", { class: "button", for: "files" }, "choose files", input),
+    ),
+    make(
+      "p",
+      { class: "note" },
+      "Units are in the column names: ",
+      make("code", {}, "time_s, temperature_c, reference_g, delta_f_hz"),
+      " or ",
+      make("code", {}, "f1_hz, f2_hz"),
+      "; ",
+      make("code", {}, "run"),
+      " and ",
+      make("code", {}, "kind"),
+      " name the recordings.",
+    ),
+    make(
+      "details",
+      { id: "mapping" },
+      make("summary", {}, "The columns have other names"),
+      make("label", { class: "field" }, "Ours = theirs, separated by commas", map),
+    ),
+  );
 }
 
 function content(campaign) {
-  const runs = campaign.runs.map((run) => ({ cells: [
-    run.run, run.kind, count(run.samples), fixed(run.interval_s, 1), fixed(run.hours, 1), fixed(run.from_c, 1), fixed(run.to_c, 1), String(run.levels),
-  ] }));
+  const runs = campaign.runs.map((run) => ({
+    cells: [
+      run.run,
+      run.kind,
+      count(run.samples),
+      fixed(run.interval_s, 1),
+      fixed(run.hours, 1),
+      fixed(run.from_c, 1),
+      fixed(run.to_c, 1),
+      String(run.levels),
+    ],
+  }));
   const number = (text) => ({ number: text });
   return [
-    make("p", {}, make("strong", {}, campaign.files.join(", ")), `: ${count(campaign.rows)} samples in ${campaign.runs.length} runs`,
-      campaign.channels.length ? `, with ${campaign.channels.join(", ")}.` : "."),
-    campaign.ignored_columns.length ? make("p", { class: "note" }, `Left unread: ${campaign.ignored_columns.join(", ")}.`) : undefined,
-    make("div", { class: "scroll tall", id: "runs-table", tabindex: "0", role: "region", "aria-label": "Runs of the campaign" },
-      table("", ["run", "kind", number("samples"), number("every s"), number("hours"), number("from °C"), number("to °C"), number("levels")], runs)),
+    make(
+      "p",
+      {},
+      make("strong", {}, campaign.files.join(", ")),
+      `: ${count(campaign.rows)} samples in ${campaign.runs.length} runs`,
+      campaign.channels.length ? `, with ${campaign.channels.join(", ")}.` : ".",
+    ),
+    campaign.ignored_columns.length
+      ? make("p", { class: "note" }, `Left unread: ${campaign.ignored_columns.join(", ")}.`)
+      : undefined,
+    make(
+      "div",
+      { class: "scroll tall", id: "runs-table", tabindex: "0", role: "region", "aria-label": "Runs of the campaign" },
+      table(
+        "",
+        [
+          "run",
+          "kind",
+          number("samples"),
+          number("every s"),
+          number("hours"),
+          number("from °C"),
+          number("to °C"),
+          number("levels"),
+        ],
+        runs,
+      ),
+    ),
     command(campaign.made_by, "Made by"),
     command(campaign.command),
   ];
 }
 
 function practice(state, context) {
-  return make("div", { class: "aside" },
-    make("p", {}, make("strong", {}, "No measurements at hand?"),
-      " A simulated sensor is put through chamber and turntable. One physical effect is hidden in it, and sealed in an envelope until you open it."),
+  return make(
+    "div",
+    { class: "aside" },
+    make(
+      "p",
+      {},
+      make("strong", {}, "No measurements at hand?"),
+      " A simulated sensor is put through chamber and turntable. One physical effect is hidden in it, and sealed in an envelope until you open it.",
+    ),
     button("Simulate a campaign with a hidden effect", {
-      id: "practice", disabled: Boolean(state.job), onclick: () => context.act("demo", {}),
-    }));
+      id: "practice",
+      disabled: Boolean(state.job),
+      onclick: () => context.act("demo", {}),
+    }),
+  );
 }
 
 export function acceptDrops(target, context) {
@@ -82,6 +158,9 @@ async function send(files, context) {
     context.refuse(refusal);
     return;
   }
-  const map = (context.ui.typed.map ?? "").split(",").map((pair) => pair.trim()).filter(Boolean);
+  const map = (context.ui.typed.map ?? "")
+    .split(",")
+    .map((pair) => pair.trim())
+    .filter(Boolean);
   await context.act("load", { files: files.map((file) => file.name), map });
 }
