@@ -46,7 +46,13 @@ fn bind(port: u16) -> Result<TcpListener, Failure> {
 
 fn begin(bench: &Arc<Bench>, first: First) -> Result<(), Failure> {
     let started = match first {
-        First::Data(data) => verb::load::start(bench, data),
+        First::Data(data) => {
+            // What is misspelt is said where it was typed.
+            if data.files.iter().any(|file| !file.exists()) {
+                data.read()?;
+            }
+            verb::load::start(bench, data)
+        }
         First::Demo { seed } => verb::demo::run(bench, verb::demo::Request { seed: Some(seed) }),
     };
     started.map_err(|refusal| refusal.failure)

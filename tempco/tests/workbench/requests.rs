@@ -137,3 +137,12 @@ fn samples_and_a_choice_among_them_are_those_of_the_campaign() {
     assert!(cold["samples"].as_u64() < judged["samples"].as_u64() && cold["samples"].as_u64() > Some(0), "{cold}");
     assert_eq!(served.get("/api/samples?models=9").status, 409);
 }
+
+#[test]
+fn a_file_that_is_not_there_is_said_in_the_terminal() {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_tempco")).args(["workbench", "no-such.csv"]).output().expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("no-such.csv") && said.contains("help:"), "{said}");
+}

@@ -79,7 +79,7 @@ function refuse(refusal) {
 function draw() {
   if (!state) return;
   const model = state.models.find((one) => one.number === state.current);
-  if (!state.models.some((one) => one.number === ui.against)) ui.against = undefined;
+  if (ui.against === state.current || !state.models.some((one) => one.number === ui.against)) ui.against = undefined;
   drawSteps(model);
   const panel = find("panel");
   keepFocus(panel, () =>
@@ -93,8 +93,8 @@ function draw() {
   find("subject").textContent = state.campaign
     ? `${state.campaign.files.join(", ")}${model ? ` · model ${model.number}` : ""}`
     : "";
-  guide.update(state, context);
   linked.update(state, ui, choose).catch((refusal) => refuse(refusal));
+  guide.update(state, context);
 }
 
 // Drawing anew must not take away what one is at: focus, and a list's place.

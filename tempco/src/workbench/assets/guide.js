@@ -184,6 +184,6 @@ function draw(state, context) {
   if (!state.job) target?.classList.add("marked");
   if (target && arrived !== stop && !state.job) {
     arrived = stop;
-    target.scrollIntoView({ block: "nearest" });
+    target.scrollIntoView({ block: target.clientHeight > innerHeight / 2 ? "start" : "nearest" });
   }
 }

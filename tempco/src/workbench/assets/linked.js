@@ -56,7 +56,9 @@ async function update(state, ui, choose) {
   }
   drawControls(state, ui, model, choose);
   const models = [model.number, ui.against].filter(Boolean);
-  const key = `${state.campaign.files}|${models}|${ui.runs ?? "all"}`;
+  // No two models ever share a file.
+  const files = state.models.filter((one) => models.includes(one.number)).map((one) => one.file);
+  const key = `${files}|${models}|${ui.runs ?? "all"}`;
   if (key === shown.key) return;
   shown = { key };
   const data = unpack(await bytes(`/api/samples?models=${models}`));

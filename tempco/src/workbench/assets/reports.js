@@ -68,7 +68,8 @@ function draw() {
   const target = document.getElementById("curves");
   if (target) drawCurves(target);
   const ladder = document.getElementById("rungs");
-  if (ladder && running) drawRungs(ladder, rungs(running));
+  // A bar that grows would begin anew each time.
+  if (ladder && running && ladder.children.length !== rungs(running).length) drawRungs(ladder, rungs(running));
 }
 
 function drawCurves(target) {

@@ -93,7 +93,7 @@ function card(finding, state, model, context) {
         ),
       ),
       Object.entries(finding.parameters).map(([key, estimate]) => [
-        make("dt", {}, parameterName(key, about)),
+        make("dt", {}, key),
         make("dd", {}, parameter(key, estimate, about)),
       ]),
       finding.confounded_with.length
@@ -116,20 +116,17 @@ const rung = (name_, value, highest, tone) =>
     make("span", { class: "rung-value" }, ug(value)),
   );
 
-function parameterName(key, about) {
-  const unit = about?.parameters.find((one) => one.name === key)?.unit;
-  return unit ? make("span", {}, key, make("span", { class: "unit" }, ` ${unit}`)) : key;
-}
-
-// Two digits of the uncertainty, and as many of the value.
-function parameter(_key, { value, sigma }) {
-  if (!(sigma > 0)) return value.toPrecision(4);
+// Two digits of the uncertainty, as many of the value, and the unit.
+function parameter(key, { value, sigma }, about) {
+  const unit = about?.parameters.find((one) => one.name === key)?.unit ?? "";
+  if (!(sigma > 0)) return `${value.toPrecision(4)} ${unit}`;
   const exponent = (number) => Math.floor(Math.log10(Math.abs(number)));
   const top = exponent(Math.max(Math.abs(value), sigma));
   const scale = top >= -3 && top < 6 ? 0 : top;
   const digits = Math.max(0, Math.min(12, 1 + scale - exponent(sigma)));
   const [v, s] = [value, sigma].map((number) => fixed(number * 10 ** -scale, digits));
-  return scale ? make("span", {}, `(${v} ± ${s}) · 10`, make("sup", {}, String(scale).replace("-", "\u2212"))) : `${v} ± ${s}`;
+  if (!scale) return `${v} ± ${s} ${unit}`;
+  return make("span", {}, `(${v} ± ${s}) · 10`, make("sup", {}, String(scale).replace("-", "\u2212")), ` ${unit}`);
 }
 
 function formula({ unexplained }, state, model, context) {

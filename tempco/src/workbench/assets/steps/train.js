@@ -56,7 +56,7 @@ function split(state, context) {
   const shown = names.length > 8 ? `${names.slice(0, 7).join(", ")} and ${names.length - 7} more` : names.join(", ") || "none";
   return make(
     "details",
-    { id: "split", class: "split", open: !state.models.length },
+    { id: state.models.length ? "split" : "first-split", class: "split", open: !state.models.length },
     make(
       "summary",
       {},
