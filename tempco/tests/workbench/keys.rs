@@ -38,7 +38,6 @@ fn the_loop_can_be_gone_by_keys_alone() {
     press(&mut browser, "step-train");
     assert_eq!(browser.evaluate("document.activeElement.id"), json!("main"), "a step's own things come next");
     press(&mut browser, "train");
-    rest(&mut browser);
     until(&mut browser, "document.getElementById('linked').hidden === false");
     until(&mut browser, "document.querySelector('[data-column=temperature_c] .base').width > 0");
     for _ in 0..120 {
@@ -55,9 +54,14 @@ fn the_loop_can_be_gone_by_keys_alone() {
     assert!(lit(&mut browser, "time_h") > 0);
     browser.key("Escape");
     assert_eq!(lit(&mut browser, "time_h"), 0);
-    for (step, button) in [("step-diagnose", "diagnose"), ("step-export", "export"), ("step-verify", "verify")] {
+    for (step, button, answer) in [
+        ("step-diagnose", "diagnose", ".verdict"),
+        ("step-export", "export", "#download-hex"),
+        ("step-verify", "verify", ".verdict"),
+    ] {
         press(&mut browser, step);
         press(&mut browser, button);
+        until(&mut browser, &format!("Boolean(document.querySelector('{answer}'))"));
         rest(&mut browser);
     }
     until(&mut browser, "document.querySelector('.verdict')?.textContent.includes('identical in every bit') === true");

@@ -152,8 +152,8 @@ function drawLegend(both) {
 function brushed(plot, region, since) {
   brush = region && { plot, ...region };
   for (const one of plots) one.setBrush(one === plot ? region : undefined);
-  const mask = region && chosen(plot.axis, region);
-  for (const one of plots) one.light(mask);
+  const rows = region && chosen(plot.axis, region);
+  for (const one of plots) one.light(rows);
   performance.measure("brush", { start: since, end: performance.now() });
   clearTimeout(pending);
   if (region) pending = setTimeout(tell, SETTLE_MS);
@@ -167,12 +167,12 @@ function chosen({ column, log }, { x, y }) {
     residuals: [residual],
   } = shown;
   const values = columns[column];
-  const mask = new Uint8Array(residual.length);
-  for (let k = 0; k < mask.length; k += 1) {
+  const rows = [];
+  for (let k = 0; k < residual.length; k += 1) {
     const value = log ? Math.max(0.1, values[k]) : values[k];
-    mask[k] = value >= x[0] && value <= x[1] && residual[k] >= y[0] && residual[k] <= y[1] ? 1 : 0;
+    if (value >= x[0] && value <= x[1] && residual[k] >= y[0] && residual[k] <= y[1]) rows.push(k);
   }
-  return mask;
+  return rows;
 }
 
 // What the chosen samples amount to is computed from all of them, drawn or not.

@@ -60,20 +60,22 @@ export class Scatter {
       canvas.width = Math.round((inner.right - inner.left) * this.dense);
       canvas.height = Math.round((inner.bottom - inner.top) * this.dense);
     }
+    this.size = Math.max(2, Math.round(1.7 * this.dense));
+    const image = new ImageData(Math.max(1, this.lit.width), Math.max(1, this.lit.height));
+    // One word a pixel, in this order of bytes on every machine that runs a browser.
+    this.stamped = { image, words: new Uint32Array(image.data.buffer) };
     this.#place();
     this.#axes(width, height);
-    this.#paint(this.base, undefined, FAINT);
-    this.light(this.mask);
+    this.#paint(this.base, FAINT);
+    this.light(this.rows);
     this.#drawBrush();
   }
 
-  // Shows the chosen samples in full, and the others faintly.
-  light(mask) {
-    this.mask = mask;
-    this.box.classList.toggle("dimmed", Boolean(mask));
-    if (!this.inner) return;
-    if (mask) this.#paint(this.lit, mask, 1);
-    else this.lit.getContext("2d", WRITTEN).clearRect(0, 0, this.lit.width, this.lit.height);
+  // Shows the chosen samples in full, and the others faintly. `rows` are the places of the chosen ones.
+  light(rows) {
+    this.rows = rows;
+    this.box.classList.toggle("dimmed", Boolean(rows));
+    if (this.inner) this.#stamp(rows ?? []);
   }
 
   setBrush(brush) {
@@ -98,20 +100,39 @@ export class Scatter {
     });
   }
 
-  #paint(canvas, mask, strength) {
+  // All samples, one laid over the other, so that it is darker where they are many.
+  #paint(canvas, strength) {
     const { width, height } = canvas;
     if (!width || !height) return;
     const context = canvas.getContext("2d", WRITTEN);
     const image = context.createImageData(width, height);
-    const size = Math.max(2, Math.round(1.7 * this.dense));
     this.series.forEach(({ classes }, which) => {
       const py = this.py[which];
-      for (let k = 0; k < py.length; k += 1) {
-        if (mask && !mask[k]) continue;
-        dot(image, this.px[k], py[k], size, this.palette[classes[k]], strength);
-      }
+      for (let k = 0; k < py.length; k += 1) dot(image, this.px[k], py[k], this.size, this.palette[classes[k]], strength);
     });
     context.putImageData(image, 0, 0);
+  }
+
+  // The chosen ones, in full colour: whole pixels are written, for a brush moves with the hand.
+  #stamp(rows) {
+    const { width, height } = this.lit;
+    if (!width || !height) return;
+    const { words, image } = this.stamped;
+    words.fill(0);
+    const colours = this.palette.map(([red, green, blue]) => (255 << 24) | (blue << 16) | (green << 8) | red);
+    const half = this.size >> 1;
+    this.series.forEach(({ classes }, which) => {
+      const py = this.py[which];
+      for (const k of rows) {
+        const colour = colours[classes[k]];
+        const [left, top] = [Math.max(0, this.px[k] - half), Math.max(0, py[k] - half)];
+        const [right, bottom] = [Math.min(width, this.px[k] - half + this.size), Math.min(height, py[k] - half + this.size)];
+        for (let y = top; y < bottom; y += 1) {
+          for (let x = left; x < right; x += 1) words[y * width + x] = colour;
+        }
+      }
+    });
+    this.lit.getContext("2d", WRITTEN).putImageData(image, 0, 0);
   }
 
   #axes(width, height) {

@@ -60,18 +60,16 @@ function answer(plan) {
     unseen: `Nothing is ambiguous. This campaign could not show ${open}.`,
   }[plan.reason];
   const pair = (one) => `${one.from ? `${one.effect} | ${one.from}` : one.effect} ${fixed(one.sigma, 1)} σ`;
-  const rows = plan.proposals
-    .slice(0, USEFUL)
-    .map((one, k) => ({
-      properties: { class: k === 0 && plan.file ? "current" : "" },
-      cells: [
-        one.recording,
-        fixed(one.hours, 1),
-        fixed(one.days, 1),
-        fixed(one.sigma2_per_hour, 1),
-        one.separations.map(pair).join(", "),
-      ],
-    }));
+  const rows = plan.proposals.slice(0, USEFUL).map((one, k) => ({
+    properties: { class: k === 0 && plan.file ? "current" : "" },
+    cells: [
+      one.recording,
+      fixed(one.hours, 1),
+      fixed(one.days, 1),
+      fixed(one.sigma2_per_hour, 1),
+      one.separations.map(pair).join(", "),
+    ],
+  }));
   return [
     make("p", { class: "answer" }, why),
     plan.file
