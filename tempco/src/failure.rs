@@ -74,6 +74,7 @@ macro_rules! plain {
 plain!(
     trainer::cross_validation::CrossValidationError,
     trainer::diagnose::DiagnoseError,
+    trainer::ladder::LadderError,
     trainer::model::ModelError,
     trainer::model::DeviceLimit,
     trainer::residuals::ResidualError,

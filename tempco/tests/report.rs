@@ -98,6 +98,128 @@ fn a_mark_can_be_read_by_pointer_and_by_keys_and_magnified() {
 }
 
 #[test]
+fn a_reader_without_eyes_or_colours_gets_headings_tables_and_words() {
+    let folder = TempDir::new().expect("a folder");
+    let file = report(folder.path(), &campaigns()[0]);
+    let mut browser = Chromium::start();
+    browser.visit(&format!("file://{}", file.display()));
+    let levels = browser.evaluate("[...document.querySelectorAll('h1,h2,h3')].map((heading) => +heading.tagName[1])");
+    let levels: Vec<i64> = levels.as_array().expect("a list").iter().filter_map(serde_json::Value::as_i64).collect();
+    assert_eq!(levels.iter().filter(|level| **level == 1).count(), 1);
+    assert!(levels.windows(2).all(|pair| pair[1] <= pair[0] + 1), "a level is skipped: {levels:?}");
+    for (what, nobody) in [
+        ("a table without caption", "table:not(:has(> caption))"),
+        ("a heading cell without scope", "th:not([scope])"),
+        ("a plot that no key reaches", "svg.plot:not([tabindex='0'])"),
+        ("a plot without words", "svg.plot:not([aria-label*='. '])"),
+        ("a link to nowhere", "nav a:not([href^='#'])"),
+    ] {
+        assert_eq!(browser.evaluate(&format!("document.querySelectorAll(\"{nobody}\").length")), 0, "{what}");
+    }
+    let lost =
+        "[...document.querySelectorAll('nav a')].filter((a) => !document.querySelector(a.getAttribute('href'))).length";
+    assert_eq!(browser.evaluate(lost), 0, "a link without a target");
+    // Shapes: no two series of a chart share one, whatever their colours.
+    let shapes =
+        "['first', 'second', 'third', 'fourth', 'fifth', 'sixth'].map((tone) => globalThis.charts.shape(tone, 0, 0))";
+    assert_eq!(browser.evaluate(&format!("new Set({shapes}).size")), 6);
+}
+
+#[test]
+fn twenty_thousand_marks_are_drawn_and_read_while_one_looks() {
+    let folder = TempDir::new().expect("a folder");
+    let file = report(folder.path(), &campaigns()[0]);
+    let mut browser = Chromium::start();
+    browser.visit(&format!("file://{}", file.display()));
+    let spent = "(() => {
+        const target = document.querySelector('.chart');
+        const at = [...Array(20000).keys()];
+        const axis = { label: 'x', unit: '', scale: 'linear', range: [0, 20000] };
+        const dots = { mark: 'dots', name: 'many', tone: 'second', x: at, y: at.map((k) => k * 7919 % 20000), run: [] };
+        const chart = { id: 'many', title: 'Many', caption: '', x: axis, y: axis, layers: [dots] };
+        const times = [...Array(5)].map(() => {
+            const start = performance.now();
+            const { svg } = charts.draw(target, chart);
+            svg.dispatchEvent(new PointerEvent('pointermove', { clientX: 300, clientY: 200 }));
+            svg.getBoundingClientRect();
+            return performance.now() - start;
+        });
+        return Math.min(...times);
+    })()";
+    let spent_ms = browser.evaluate(spent).as_f64().expect("a number");
+    assert!(spent_ms < 100.0, "{spent_ms} ms");
+}
+
+#[test]
+fn effects_are_a_ladder_and_a_diagnosis_is_there_when_asked_for() {
+    let folder = TempDir::new().expect("a folder");
+    let data = campaigns()[0].to_str().expect("a path in Unicode").to_owned();
+    let plain = fs::read_to_string(report(folder.path(), &campaigns()[0])).expect("written");
+    assert!(!plain.contains("id=\"ladder\"") && !plain.contains("id=\"diagnosis\""));
+    let add = ["add", "model.toml", "thermal-lag", &data, "-o", "lag.toml"];
+    tempco(folder.path()).args(add).assert().success();
+    let compare = ["compare", "lag.toml", &data, "--report", "lag.html", "--diagnose"];
+    tempco(folder.path()).args(compare).assert().success();
+    let html = fs::read_to_string(folder.path().join("lag.html")).expect("written");
+    for needed in ["id=\"ladder\"", "+ thermal-lag", "network alone", "id=\"diagnosis\"", "this campaign can't show"] {
+        assert!(html.replace("&#39;", "'").to_lowercase().contains(needed), "{needed}");
+    }
+    tempco(folder.path()).args(["compare", "lag.toml", &data, "--diagnose"]).assert().code(2);
+}
+
+#[test]
+fn the_report_says_where_it_comes_from_and_what_each_figure_is() {
+    let folder = TempDir::new().expect("a folder");
+    let html = fs::read_to_string(report(folder.path(), &campaigns()[0])).expect("written");
+    let model = fs::read_to_string(folder.path().join("model.toml")).expect("written");
+    let hash = model.lines().find_map(|line| line.strip_prefix("campaign = \"")).expect("a hash").trim_end_matches('"');
+    assert!(html.contains(hash), "the campaign's hash");
+    assert!(html.contains(campaigns()[0].file_name().expect("a name").to_str().expect("Unicode")), "the data file");
+    for definition in [
+        "<dt>Z2 from the start</dt>",
+        "<dt>Z4 (drift removed)</dt>",
+        "<dt>Z6 (Allan minimum)</dt>",
+        "eq. 12",
+        "held out",
+        "seed 1",
+    ] {
+        assert!(html.contains(definition), "{definition}");
+    }
+}
+
+/// The data that the charts of a report are drawn from.
+fn data(html: &str) -> serde_json::Value {
+    let (_, rest) = html.split_once("id=\"data\">").expect("data");
+    let (json, _) = rest.split_once("</script>").expect("its end");
+    serde_json::from_str(json).expect("JSON")
+}
+
+#[test]
+fn no_mark_lies_outside_its_axes() {
+    for campaign in campaigns() {
+        let folder = TempDir::new().expect("a folder");
+        let html = fs::read_to_string(report(folder.path(), &campaign)).expect("written");
+        let data = data(&html);
+        let numbers = |value: &serde_json::Value| -> Vec<f64> {
+            value.as_array().into_iter().flatten().filter_map(serde_json::Value::as_f64).collect()
+        };
+        let mut checked = 0;
+        for chart in data["charts"].as_array().expect("charts") {
+            for layer in chart["layers"].as_array().expect("layers").iter().filter(|layer| layer["mark"] == "dots") {
+                for axis in ["x", "y"] {
+                    let range = numbers(&chart[axis]["range"]);
+                    let inside = |value: &f64| (range[0]..=range[1]).contains(value);
+                    assert!(numbers(&layer[axis]).iter().all(inside), "{}, {axis}", chart["id"]);
+                    checked += 1;
+                }
+            }
+        }
+        assert!(checked > 10, "{checked} layers");
+        assert!(data["runs"].as_array().is_some_and(|runs| runs.iter().any(|run| run["held_out"] == true)));
+    }
+}
+
+#[test]
 fn the_report_is_one_file_that_asks_nothing_of_the_network_and_the_same_every_time() {
     let folder = TempDir::new().expect("a folder");
     let first = fs::read_to_string(report(folder.path(), &campaigns()[0])).expect("written");

@@ -3,6 +3,7 @@
 use crate::campaign::{Campaign, Run};
 use crate::metrics::allan::{AllanPoint, allan};
 use crate::metrics::full_temperature::{FullTemperature, full_temperature};
+use crate::metrics::stability::{Stability, stability};
 use crate::metrics::zero_bias::{ZeroBias, zero_bias};
 use crate::model::Model;
 use crate::noise::{rms, sample_sigma_g};
@@ -73,6 +74,8 @@ pub struct Figures {
     pub full_temperature: Option<FullTemperature>,
     /// Of evenly sampled runs of kind `zero` or `static`.
     pub allan: Option<Vec<AllanPoint>>,
+    /// Of the same runs, every definition of stability at rest.
+    pub stability: Option<Stability>,
 }
 
 /// Compares the model with every run of the campaign. Which runs were held out is read from the model.
@@ -136,7 +139,9 @@ fn run_figures(model: &Model, run: &RunResiduals, held_out: bool) -> Option<RunF
     any.then(|| RunFigures { run: run.run.name.clone(), held_out, raw, compensated })
 }
 
-fn mean_slope_g_per_hz(model: &Model) -> f64 {
+/// The slope of the model in the middle of its domain: what a raw figure in Hz is divided by.
+#[must_use]
+pub fn mean_slope_g_per_hz(model: &Model) -> f64 {
     let middle = |[low, high]: [f64; 2]| f64::midpoint(low, high);
     let delta_f_uhz = middle(model.domain.delta_f_uhz.map(|uhz| uhz as f64));
     SlopeOf::new(model).at(delta_f_uhz, middle(model.domain.temperature_uc.map(f64::from)))
@@ -144,9 +149,11 @@ fn mean_slope_g_per_hz(model: &Model) -> f64 {
 
 fn figures(run: &Run, outputs_g: &[f64], residuals_g: &[f64], outputs: &[f64]) -> Figures {
     let still = run.kind == "zero" || run.kind == "static";
+    let allan = still.then(|| allan(run, residuals_g)).flatten();
     Figures {
         zero_bias: zero_bias(run, outputs_g),
         full_temperature: full_temperature(run, outputs),
-        allan: still.then(|| allan(run, residuals_g)).flatten(),
+        stability: still.then(|| stability(run, residuals_g, allan.as_deref())),
+        allan,
     }
 }

@@ -22,6 +22,7 @@ pub mod cross_validation;
 pub mod diagnose;
 pub mod expression;
 pub mod fit;
+pub mod ladder;
 pub mod linked;
 pub mod metrics;
 pub mod model;

@@ -1,7 +1,9 @@
 //! Figures of merit, each with its definition.
 
 pub mod allan;
+pub mod allan_model;
 pub mod full_temperature;
+pub mod stability;
 pub mod states;
 pub mod zero_bias;
 

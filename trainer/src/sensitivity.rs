@@ -30,34 +30,57 @@ const GRID: i32 = 41;
 /// the campaign can't measure one because its reference never varies.
 #[must_use]
 pub fn sensitivity(model: &Model, campaign: &Campaign) -> Option<Sensitivity> {
-    if campaign.levels(LEVEL_TOLERANCE_G).len() < 2 {
-        return None;
-    }
-    let scale = InputScale::of(&campaign.runs)?;
-    let data: Vec<_> =
-        campaign.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| merged(run, i, &scale)).collect();
-    let measured = Polynomial::fit(&data);
-    let slope = |x: f64, t: f64| measured.slope(x, t) / scale.delta_f_half_span_hz;
-    Some(over_domain(model, |delta_f_uhz, temperature_uc| {
-        let x = (delta_f_uhz - scale.delta_f_zero_uhz as f64) * 1e-6 / scale.delta_f_half_span_hz;
-        let t = (temperature_uc - f64::from(scale.temperature_zero_uc)) * 1e-6 / scale.temperature_half_span_c;
-        slope(x, t)
-    }))
+    let error = SlopeError::new(model, campaign)?;
+    Some(over_grid(model, |delta_f_uhz, temperature_uc| error.ppm_at(delta_f_uhz, temperature_uc)))
 }
 
 /// References closer than this are one level, g.
 const LEVEL_TOLERANCE_G: f64 = 0.01;
 
+/// How far a model's slope is from the one that a campaign measures.
+pub struct SlopeError<'a> {
+    slope: SlopeOf<'a>,
+    measured: Polynomial,
+    scale: InputScale,
+}
+
+impl<'a> SlopeError<'a> {
+    /// `None` where the campaign measures no scale factor because its reference never varies.
+    #[must_use]
+    pub fn new(model: &'a Model, campaign: &Campaign) -> Option<Self> {
+        if campaign.levels(LEVEL_TOLERANCE_G).len() < 2 {
+            return None;
+        }
+        let scale = InputScale::of(&campaign.runs)?;
+        let data: Vec<_> =
+            campaign.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| merged(run, i, &scale)).collect();
+        Some(Self { slope: SlopeOf::new(model), measured: Polynomial::fit(&data), scale })
+    }
+
+    /// ppm of the measured slope, at a frequency difference in µHz and a temperature in µ°C.
+    #[must_use]
+    pub fn ppm_at(&self, delta_f_uhz: f64, temperature_uc: f64) -> f64 {
+        let scale = &self.scale;
+        let x = (delta_f_uhz - scale.delta_f_zero_uhz as f64) * 1e-6 / scale.delta_f_half_span_hz;
+        let t = (temperature_uc - f64::from(scale.temperature_zero_uc)) * 1e-6 / scale.temperature_half_span_c;
+        let measured_g_per_hz = self.measured.slope(x, t) / scale.delta_f_half_span_hz;
+        (self.slope.at(delta_f_uhz, temperature_uc) / measured_g_per_hz - 1.0) * 1e6
+    }
+}
+
 /// The model's slope over its domain against `truth_g_per_hz(delta_f_uhz, temperature_uc)`.
 pub fn over_domain(model: &Model, truth_g_per_hz: impl Fn(f64, f64) -> f64) -> Sensitivity {
+    let slope = SlopeOf::new(model);
+    over_grid(model, |f, t| (slope.at(f, t) / truth_g_per_hz(f, t) - 1.0) * 1e6)
+}
+
+fn over_grid(model: &Model, ppm_at: impl Fn(f64, f64) -> f64) -> Sensitivity {
     let [f_low, f_high] = model.domain.delta_f_uhz.map(|uhz| uhz as f64);
     let [t_low, t_high] = model.domain.temperature_uc.map(f64::from);
-    let slope = SlopeOf::new(model);
     let (mut squares, mut worst) = (0.0, 0.0_f64);
     for (i, j) in (0..GRID).flat_map(|i| (0..GRID).map(move |j| (i, j))) {
         let part = |k: i32| f64::from(k) / f64::from(GRID - 1);
-        let (f, t) = (f_low + (f_high - f_low) * part(i), t_low + (t_high - t_low) * part(j));
-        let ppm = (slope.at(f, t) / truth_g_per_hz(f, t) - 1.0) * 1e6;
+        let ppm = ppm_at(f_low + (f_high - f_low) * part(i), t_low + (t_high - t_low) * part(j));
         squares += ppm * ppm;
         worst = worst.max(ppm.abs());
     }

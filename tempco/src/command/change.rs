@@ -4,10 +4,10 @@ use super::train::train_with_bar;
 use crate::failure::{Answer, Failure};
 use crate::render;
 use crate::table::Table;
-use serde::Serialize;
 use std::path::Path;
 use trainer::campaign::{Campaign, HoldOut, Split};
 use trainer::compare::{Comparison, compare};
+use trainer::ladder::{BARE, Rung};
 use trainer::model::{Model, Provenance};
 use trainer::train::{EffectChoice, TrainSettings, Trained, check};
 
@@ -16,13 +16,6 @@ pub struct Change<'a> {
     model: &'a Model,
     campaign: &'a Campaign,
     split: Split,
-}
-
-/// One rung of a ladder: the model up to this effect.
-#[derive(Clone, Debug, Serialize)]
-pub struct Rung {
-    pub effect: String,
-    pub residual_ug: f64,
 }
 
 /// What was trained from the bare network up.
@@ -82,7 +75,7 @@ impl<'a> Change<'a> {
         let mut rungs = Vec::new();
         let mut top = None;
         for count in 0..=effects.len() {
-            let effect = count.checked_sub(1).map_or("network alone", |last| effects[last].title()).to_owned();
+            let effect = count.checked_sub(1).map_or(BARE, |last| effects[last].title()).to_owned();
             let model = train(&self.split, &self.settings(&effects[..count]), &effect)?.model;
             let comparison = compare(&model, self.campaign)?;
             let rung = Rung { effect, residual_ug: comparison.residual_ug };

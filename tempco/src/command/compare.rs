@@ -1,21 +1,25 @@
 //! `tempco compare MODEL DATA`
 
+use super::diagnose::diagnosed;
 use crate::data::Data;
 use crate::failure::{Answer, Failure};
+use crate::progress::Restarts;
 use crate::render;
 use crate::report::html;
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use trainer::campaign::{Campaign, HoldOut};
 use trainer::compare::compare;
 use trainer::cross_validation::{CrossValidation, cross_validate};
-use trainer::model::Model;
-use trainer::report::report;
+use trainer::ladder::{Rung, ladder};
+use trainer::model::{Model, Provenance};
+use trainer::report::{DataFile, Report, report};
 use trainer::train::{EffectChoice, TrainSettings};
 
 /// Compares a model with measurements, run by run, in the device's own arithmetic.
 #[derive(Args)]
-#[command(after_help = "Example:  tempco compare model.toml campaign.csv --fail-above 8")]
+#[command(after_help = "Example:  tempco compare model.toml campaign.csv --fail-above 8
+          tempco compare model.toml campaign.csv --report report.html --diagnose")]
 pub struct Compare {
     /// Model file
     model: PathBuf,
@@ -34,6 +38,10 @@ pub struct Compare {
     /// Writes a report for people as well: one HTML file that needs nothing else
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
+
+    /// Diagnoses for the report which effects are missing
+    #[arg(long, requires = "report")]
+    diagnose: bool,
 
     /// Prints one JSON object instead of text
     #[arg(long)]
@@ -57,16 +65,38 @@ impl Compare {
             }
         }
         if let Some(path) = &self.report {
-            write_report(path, &model, &campaign)?;
+            let html = html(&self.report(&model, &campaign)?).map_err(Failure::new)?;
+            std::fs::write(path, html).map_err(|error| Failure::io(path, &error))?;
+            if !self.json {
+                anstream::println!("Report written to {}", path.display());
+            }
         }
         let exceeded = self.fail_above.is_some_and(|limit_ug| comparison.residual_ug > limit_ug);
         Ok(if exceeded { Answer::No } else { Answer::Yes })
     }
+
+    fn report(&self, model: &Model, campaign: &Campaign) -> Result<Report, Failure> {
+        let mut report = report(model, campaign)?;
+        report.origin.files = DataFile::all_of(campaign).map_err(Failure::new)?;
+        // Without a level to train on, the lower rungs would need a scale factor that the model file doesn't state.
+        let trainable = report.comparison.sensitivity_ppm.is_some();
+        if report.origin.same_campaign && trainable && !model.effects.is_empty() {
+            report.ladder = rungs(model, campaign)?;
+        }
+        if self.diagnose {
+            report.diagnosis = Some(diagnosed(model, campaign)?);
+        }
+        Ok(report)
+    }
 }
 
-fn write_report(path: &Path, model: &Model, campaign: &Campaign) -> Result<(), Failure> {
-    let html = html(&report(model, campaign)?).map_err(Failure::new)?;
-    std::fs::write(path, html).map_err(|error| Failure::io(path, &error))
+/// What each effect of the model is worth. The lower rungs are trained again, as `add` did.
+fn rungs(model: &Model, campaign: &Campaign) -> Result<Vec<Rung>, Failure> {
+    let Provenance { seed, restarts, held_out_runs, .. } = &model.provenance;
+    let choice = if held_out_runs.is_empty() { HoldOut::None } else { HoldOut::Named(held_out_runs.clone()) };
+    let settings = TrainSettings { restarts: *restarts, ..TrainSettings::new(*seed) };
+    let progress = Restarts::new(restarts * model.effects.len(), "ladder");
+    Ok(ladder(model, campaign, &campaign.split(&choice)?, &settings, &progress)?)
 }
 
 /// Fewer restarts than a training: dozens of trainings are made, and the median restart is as good for this.

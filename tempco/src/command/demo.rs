@@ -1,6 +1,6 @@
 //! `tempco demo`: the whole path on a blind campaign, the truth revealed at the end.
 
-use super::change::{Rung, rungs_table};
+use super::change::rungs_table;
 use super::diagnose::diagnosed;
 use super::simulate::{self, blind::Blind};
 use super::train::{Simpler, train_with_bar};
@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use trainer::campaign::{Campaign, HoldOut, ReadOptions, Split};
 use trainer::compare::compare;
 use trainer::diagnose::Diagnosis;
+use trainer::ladder::Rung;
 use trainer::model::Model;
 use trainer::residuals::arranged;
 use trainer::train::{EffectChoice, TrainSettings, Trained};

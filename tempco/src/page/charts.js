@@ -11,7 +11,7 @@ globalThis.charts = globalThis.charts ?? {};
 (() => {
   const { element, mark, shape, scale } = globalThis.charts;
   const SIZE = { width: 620, height: 330 };
-  const ROOM = { left: 62, right: 14, top: 10, bottom: 44 };
+  const ROOM = { left: 68, right: 14, top: 10, bottom: 44 };
   let count = 0;
 
   function draw(target, chart, options = {}) {
@@ -68,7 +68,7 @@ globalThis.charts = globalThis.charts ?? {};
     const middle = (box.top + box.bottom) / 2;
     return element("g", { class: "names" },
       element("text", { x: (box.left + box.right) / 2, y: box.bottom + 36, "text-anchor": "middle" }, titled(chart.x)),
-      element("text", { transform: `translate(14 ${middle}) rotate(-90)`, "text-anchor": "middle" }, titled(chart.y)));
+      element("text", { transform: `translate(13 ${middle}) rotate(-90)`, "text-anchor": "middle" }, titled(chart.y)));
   }
 
   // What a screen reader says instead of the picture.

@@ -14,16 +14,19 @@ globalThis.charts = globalThis.charts ?? {};
     return made;
   }
 
-  // The shape says what the colour says, for whoever sees no colours.
+  // The shape says what the colour says, for whoever sees no colours. `r` is half its width.
   const SHAPES = {
     quiet: (x, y) => `M${x} ${y}h0`,
     first: (x, y) => `M${x} ${y}h0`,
-    second: (x, y) => `M${x - 2} ${y - 2}l4 4m0-4l-4 4`,
-    third: (x, y) => `M${x - 2.4} ${y + 1.8}l2.4-4.2l2.4 4.2z`,
-    fourth: (x, y) => `M${x - 1.8} ${y - 1.8}h3.6v3.6h-3.6z`,
-    fifth: (x, y) => `M${x - 2.5} ${y}l2.5-2.5l2.5 2.5l-2.5 2.5z`,
-    sixth: (x, y) => `M${x - 2.5} ${y}h5m-2.5-2.5v5`,
+    second: (x, y, r) => `M${x - r} ${y - r}l${2 * r} ${2 * r}m0-${2 * r}l-${2 * r} ${2 * r}`,
+    third: (x, y, r) => `M${x - r} ${y + r}l${r}-${2 * r}l${r} ${2 * r}z`,
+    fourth: (x, y, r) => `M${x - r} ${y - r}h${2 * r}v${2 * r}h-${2 * r}z`,
+    fifth: (x, y, r) => `M${x - r} ${y}l${r}-${r}l${r} ${r}l-${r} ${r}z`,
+    sixth: (x, y, r) => `M${x - r} ${y}h${2 * r}m-${r}-${r}v${2 * r}`,
   };
+  const RADIUS = 2;
+  // The fewer marks, the larger: up to how many, and how much.
+  const SIZES = [{ most: 60, name: " few", times: 2 }, { most: 900, name: " some", times: 1.3 }];
 
   const pixel = (value) => Math.round(value * 10) / 10;
   const classes = (layer) => `mark ${layer.mark} tone-${layer.tone ?? "ink"}`;
@@ -34,9 +37,9 @@ globalThis.charts = globalThis.charts ?? {};
 
   const MARKS = {
     dots(layer, { x, y }) {
-      const shape = SHAPES[layer.tone];
-      const d = layer.x.map((place, k) => shape(pixel(x.at(place)), pixel(y.at(layer.y[k])))).join("");
-      return element("path", { class: classes(layer), d });
+      const { name, times } = SIZES.find(({ most }) => layer.x.length <= most) ?? { name: "", times: 1 };
+      const at = (place, k) => shape(layer.tone, pixel(x.at(place)), pixel(y.at(layer.y[k])), times * RADIUS);
+      return element("path", { class: classes(layer) + name, d: layer.x.map(at).join("") });
     },
 
     line(layer, frame) {
@@ -96,7 +99,7 @@ globalThis.charts = globalThis.charts ?? {};
   }
 
   const mark = (layer, frame) => MARKS[layer.mark](layer, frame);
-  const shape = (tone, x, y) => SHAPES[tone](x, y);
+  const shape = (tone, x, y, r = RADIUS) => SHAPES[tone](x, y, r);
 
   Object.assign(globalThis.charts, { element, mark, shape });
 })();

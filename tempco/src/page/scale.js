@@ -18,13 +18,13 @@ globalThis.charts = globalThis.charts ?? {};
         const inner = low + (pixel - from) / perUnit;
         return log ? 10 ** inner : inner;
       },
-      ticks: log ? logTicks(axis.range) : linearTicks(axis.range, Math.abs(to - from)),
+      ticks: log ? logTicks(axis.range) : linearTicks(axis.range, Math.abs(to - from) / (to > from ? 75 : 42)),
     };
   }
 
-  // Steps of 1, 2 or 5 times a power of ten, about one every 70 pixels.
-  function linearTicks([low, high], pixels) {
-    const rough = (high - low) / Math.max(2, pixels / 70);
+  // Steps of 1, 2 or 5 times a power of ten: about so many ticks. Words lie wide and stand close.
+  function linearTicks([low, high], about) {
+    const rough = (high - low) / Math.max(2, about);
     const power = 10 ** Math.floor(Math.log10(rough));
     const step = [1, 2, 5, 10].map((k) => k * power).find((candidate) => candidate >= rough);
     const ticks = [];

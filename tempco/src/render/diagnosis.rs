@@ -117,7 +117,7 @@ fn explained(finding: &Finding) -> String {
     if let Some(about) = about {
         let _ = writeln!(text, "  {}\n  {}", about.summary, about.equation);
     }
-    let parameters: Vec<String> = ordered(finding, about).into_iter().map(parameter).collect();
+    let parameters = parameters(finding);
     if !parameters.is_empty() {
         let _ = writeln!(text, "  {}", parameters.join(", "));
     }
@@ -132,6 +132,11 @@ fn explained(finding: &Finding) -> String {
         let _ = writeln!(text, "  No instrument can foresee it: it can be known, not compensated.");
     }
     text
+}
+
+/// The parameters in the effect's own order, each with its uncertainty and unit.
+pub fn parameters(finding: &Finding) -> Vec<String> {
+    ordered(finding, about(&finding.effect)).into_iter().map(parameter).collect()
 }
 
 /// The parameters in the effect's own order, with their units.

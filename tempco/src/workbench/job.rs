@@ -1,11 +1,11 @@
 //! Work that takes a while: what it tells meanwhile, and how it is stopped.
 
-use crate::command::change::Rung;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
+use trainer::ladder::Rung;
 use trainer::progress::{Progress, RestartNews};
 
 /// The steps of a calibration, as the page lists them.

@@ -1,7 +1,6 @@
 //! What there is between one action and the next: the campaign, the models made of it, and the answers about them.
 
 use super::job::{Job, Step};
-use crate::command::change::Rung;
 use crate::command::inspect::RunSummary;
 use crate::command::train::Simpler;
 use crate::command::verify::Parity;
@@ -14,6 +13,7 @@ use trainer::campaign::{Campaign, Split};
 use trainer::compare::{Comparison, compare};
 use trainer::diagnose::Diagnosis;
 use trainer::diagnose::plan::Plan;
+use trainer::ladder::Rung;
 use trainer::linked::Columns;
 use trainer::model::Model;
 use trainer::residuals::{arranged, residuals};
