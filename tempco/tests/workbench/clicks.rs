@@ -1,6 +1,6 @@
 //! The whole loop with the mouse, on a campaign that hides an effect: the guide leads, and the truth comes last.
 
-use super::page::{assert_silent, brush, choose, click, lit, open, picture, rest, until};
+use super::page::{assert_silent, brush, choose, click, lit, open, rest, shoot, until};
 use super::served::{Served, repeated};
 use serde_json::json;
 use std::fs;
@@ -15,11 +15,11 @@ fn the_guide_leads_by_clicks_from_the_campaign_to_the_hidden_effect_and_to_verif
     let mut browser = open(&served, "light");
     rest(&mut browser);
     until(&mut browser, "!document.getElementById('guide').hidden");
-    browser.screenshot(&picture("1-load.png"));
+    shoot(&mut browser, "1-load.png");
     click(&mut browser, "#guide-next");
     click(&mut browser, "#train");
     until(&mut browser, "document.querySelectorAll('#curves .mark.line').length >= 10");
-    browser.screenshot(&picture("2-train.png"));
+    shoot(&mut browser, "2-train.png");
     until(&mut browser, "!document.getElementById('linked').hidden");
     // The highest residuals of the cold half: the loop that a memory of temperature leaves.
     until(&mut browser, "document.querySelector('[data-column=temperature_c] .base').width > 0");
@@ -28,33 +28,33 @@ fn the_guide_leads_by_clicks_from_the_campaign_to_the_hidden_effect_and_to_verif
     for column in COLUMNS {
         assert!(lit(&mut browser, column) > 50, "{column}");
     }
-    browser.screenshot(&picture("3-brushed.png"));
+    shoot(&mut browser, "3-brushed.png");
     click(&mut browser, "#step-diagnose");
     click(&mut browser, "#diagnose");
     until(&mut browser, "Boolean(document.querySelector('.finding h3'))");
     rest(&mut browser);
-    browser.screenshot(&picture("4-diagnose.png"));
+    shoot(&mut browser, "4-diagnose.png");
     let found = browser.evaluate("document.querySelector('.finding h3').textContent");
     click(&mut browser, "[id^=add-]");
     until(&mut browser, "document.querySelectorAll('#rungs .rung').length === 1");
-    browser.screenshot(&picture("5-add.png"));
+    shoot(&mut browser, "5-add.png");
     rest(&mut browser);
     click(&mut browser, "#step-compare");
     choose(&mut browser, "#linked-against", "1");
     until(&mut browser, "document.querySelector('.keys').textContent.includes('model 1')");
-    browser.screenshot(&picture("6-compare.png"));
+    shoot(&mut browser, "6-compare.png");
     click(&mut browser, "#step-export");
     click(&mut browser, "#export");
     until(&mut browser, "Boolean(document.getElementById('download-hex'))");
-    browser.screenshot(&picture("7-export.png"));
+    shoot(&mut browser, "7-export.png");
     click(&mut browser, "#step-verify");
     click(&mut browser, "#verify");
     until(&mut browser, "document.querySelector('.verdict')?.textContent.includes('identical in every bit') === true");
-    browser.screenshot(&picture("8-verify.png"));
+    shoot(&mut browser, "8-verify.png");
     click(&mut browser, "#guide-go");
     click(&mut browser, "#reveal");
     until(&mut browser, "document.querySelector('#guide h2').textContent === 'That was the whole path'");
-    browser.screenshot(&picture("9-truth.png"));
+    shoot(&mut browser, "9-truth.png");
     let truth = browser.evaluate("document.querySelector('.seal.open strong').textContent");
     assert_eq!(found, truth);
     let state = served.state();
@@ -92,9 +92,9 @@ fn twenty_thousand_samples_follow_the_brush_within_a_tenth_of_a_second() {
     let (median, nearly_all) = (steps[steps.len() / 2], steps[steps.len() * 9 / 10]);
     println!("a step of the brush over 21888 samples: median {median:.0} ms, nine of ten within {nearly_all:.0} ms");
     assert!(median < PROMPT_MS, "{steps:?}");
-    browser.screenshot(&picture("dark.png"));
+    shoot(&mut browser, "dark.png");
     browser.screen(720, 900, "dark");
-    browser.screenshot(&picture("narrow.png"));
+    shoot(&mut browser, "narrow.png");
     let overflow = browser.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth");
     assert_eq!(overflow, json!(0), "the page is wider than a narrow screen");
     assert_silent(&browser);
@@ -115,7 +115,7 @@ fn a_bad_file_that_is_dropped_gets_the_readers_words_and_a_good_one_is_read() {
     let text = fs::read_to_string(super::served::SMALL).expect("checked in");
     browser.evaluate(&drop("bad.csv", &text.replacen("70.878", "warm", 1)));
     until(&mut browser, "document.getElementById('refusal').textContent.includes('bad.csv:2')");
-    browser.screenshot(&picture("bad-file.png"));
+    shoot(&mut browser, "bad-file.png");
     browser.evaluate(&drop("good.csv", &text));
     until(&mut browser, "document.getElementById('subject').textContent.includes('good.csv')");
     assert_eq!(browser.evaluate("document.getElementById('refusal').textContent"), json!(""));

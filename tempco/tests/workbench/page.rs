@@ -11,8 +11,14 @@ const LOOKS: u32 = 10_000;
 const LOOK: Duration = Duration::from_millis(60);
 
 /// Where pictures are kept for people to look at.
-pub fn picture(name: &str) -> PathBuf {
+fn picture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("workbench").join(name)
+}
+
+/// A picture of the whole page, from its top.
+pub fn shoot(browser: &mut Chromium, name: &str) {
+    browser.evaluate("window.scrollTo(0, 0)");
+    browser.screenshot(&picture(name));
 }
 
 /// Opens the workbench's own address.

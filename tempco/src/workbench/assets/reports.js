@@ -87,8 +87,8 @@ function drawCurves(target) {
   const best = first.length ? [first.reduce((a, b) => (lowest(b) < lowest(a) ? b : a))] : [];
   const floors = [
     ["noise floor", first.at(-1)?.noise],
-    ["noise floor of those", further.at(-1)?.noise],
-  ].filter(([, at], k, all_) => at && !(k && Math.abs(at / all_[0][1] - 1) < 0.1));
+    ["noise floor, trained on", further.at(-1)?.noise],
+  ].filter(([, at], k, all_) => at && !(k && Math.abs(at / all_[0][1] - 1) < 0.4));
   const least = Math.min(...floors.map(([, at]) => at), ...all.map(lowest));
   const top = Math.max(...all.map(({ y }) => y[Math.min(y.length - 1, 2)]));
   const chart = {

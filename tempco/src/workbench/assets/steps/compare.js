@@ -45,7 +45,7 @@ function models(state, model, context) {
     properties: { class: one.number === model.number ? "current" : "" },
     cells: [
       `${one.number} · ${one.title}`,
-      one.effect_titles.join(", ") || "–",
+      one.effect_titles.join(", ") || "none",
       ug(one.comparison.residual_ug),
       one.comparison.sensitivity_ppm ? fixed(one.comparison.sensitivity_ppm.worst, 0) : "–",
       make(
