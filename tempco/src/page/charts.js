@@ -11,7 +11,7 @@ globalThis.charts = globalThis.charts ?? {};
 (() => {
   const { element, mark, shape, scale } = globalThis.charts;
   const SIZE = { width: 620, height: 330 };
-  const ROOM = { left: 68, right: 14, top: 10, bottom: 44 };
+  const ROOM = { left: 76, right: 14, top: 10, bottom: 44 };
   let count = 0;
 
   function draw(target, chart, options = {}) {
@@ -43,7 +43,8 @@ globalThis.charts = globalThis.charts ?? {};
     return element("rect", { x: left, y: top, width: right - left, height: bottom - top, ...attributes });
   }
 
-  function grid({ x, y, box }) {
+  function grid({ chart, x, y, box }) {
+    const mapped = chart.layers.some((layer) => layer.mark === "map");
     const group = element("g", { class: "grid" });
     for (const { value, text } of x.ticks) {
       const at = x.at(value);
@@ -55,7 +56,7 @@ globalThis.charts = globalThis.charts ?? {};
     for (const { value, text } of y.ticks) {
       const at = y.at(value);
       group.append(
-        element("line", { x1: box.left, x2: box.right, y1: at, y2: at, class: value === 0 ? "zero" : "" }),
+        element("line", { x1: box.left, x2: box.right, y1: at, y2: at, class: value === 0 && !mapped ? "zero" : "" }),
         element("text", { x: box.left - 6, y: at + 4, "text-anchor": "end" }, text),
       );
     }

@@ -1,6 +1,6 @@
 //! The top of the report: the verdict, what speaks against it, the figures of merit.
 
-use super::table::{Column, Table, figure};
+use super::table::{Column, Table, figure, fixed};
 use crate::page::escaped;
 use std::fmt::Write;
 use trainer::metrics::{allan, allan_model};
@@ -57,7 +57,7 @@ fn better(merit: &Merit) -> String {
     if !ratio.is_finite() {
         return "—".to_owned();
     }
-    format!("{}×", if ratio < 10.0 { format!("{ratio:.1}") } else { figure(ratio.round()) })
+    format!("{}×", fixed(ratio, usize::from(ratio < 10.0)))
 }
 
 /// What every figure and chart means, each definition once with all the figures that it defines.

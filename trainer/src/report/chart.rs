@@ -235,7 +235,7 @@ mod tests {
         let axis = Axis::linear("temperature", "°C", [-40.0, 60.0]);
         assert_eq!(axis.rounded(20.312_345_6), 20.31);
         let wide = Axis::linear("time", "s", [0.0, 1e7]);
-        assert_eq!(wide.rounded(1_234_567.8), 1_234_600.0);
+        assert_eq!(wide.rounded(1_234_567.8), 1_235_000.0);
         let log = Axis::log("averaging time", "s", [1.0, 4096.0]);
         assert_eq!(log.rounded(4095.96), 4096.0);
     }

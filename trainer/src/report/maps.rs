@@ -120,3 +120,15 @@ pub fn sensitivity_map(model: &Model, campaign: &Campaign) -> Option<Chart> {
         layers: vec![grid.layer("slope error", "ppm", values)],
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lies_on_the_border_belongs_to_the_outermost_cell() {
+        let slots = [-40.0, -39.9, 10.0, 59.9, 60.0].map(|value| Grid::slot([-40.0, 60.0], value, 10));
+        assert_eq!(slots, [0, 0, 5, 9, 9]);
+        assert_eq!(Grid::edges([-40.0, 60.0], 4), [-40.0, -15.0, 10.0, 35.0, 60.0]);
+    }
+}

@@ -91,3 +91,33 @@ fn rates_c_per_min(run: &Run) -> Vec<Option<f64>> {
     };
     (0..rows.len()).map(&mut rate).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::Row;
+    use std::path::PathBuf;
+
+    fn run(times_s: &[u64], temperature_c: impl Fn(u64) -> f64) -> Run {
+        let row = |&second: &u64| Row {
+            sample: protocol::Sample::from_difference(second * 1_000_000, 0, (temperature_c(second) * 1e6) as i32),
+            reference_g: 0.0,
+            reference_sigma_g: None,
+        };
+        let (name, kind) = ("ramp".to_owned(), "ramp".to_owned());
+        Run { name, kind, source: PathBuf::new(), rows: times_s.iter().map(row).collect() }
+    }
+
+    #[test]
+    fn a_ramp_has_its_rate_everywhere_and_a_gap_has_none() {
+        let every_10_s: Vec<u64> = (0..30).map(|k| k * 10).collect();
+        let rates = rates_c_per_min(&run(&every_10_s, |second| second as f64 / 120.0));
+        assert!(rates.iter().all(|rate| rate.is_some_and(|rate| (rate - 0.5).abs() < 1e-3)), "{rates:?}");
+        // Two nodes an hour apart, half a minute each: the change between them is nobody's rate.
+        let nodes: Vec<u64> =
+            (0..4).chain(3600..3604).map(|k| if k < 3600 { k * 10 } else { 3600 + (k - 3600) * 10 }).collect();
+        let rates = rates_c_per_min(&run(&nodes, |second| if second < 3600 { 20.0 } else { 40.0 }));
+        assert!(rates.iter().all(|rate| *rate == Some(0.0)), "{rates:?}");
+        assert_eq!(rates_c_per_min(&run(&[0, 300], |_| 20.0)), [None, None]);
+    }
+}
