@@ -30,12 +30,15 @@ impl From<Failure> for Refusal {
 /// What is to be done with the session once work has ended.
 pub type Finish = Box<dyn FnOnce(&mut Session) + Send>;
 
+/// What a thread does; it may look whether it is to stop, and tell how far it is.
+pub type Work = Box<dyn FnOnce(&Job) -> Result<Finish, Failure> + Send>;
+
 /// Work to be done on a thread of its own.
 pub struct Task {
     pub step: Step,
     pub what: String,
     pub command: String,
-    pub work: Box<dyn FnOnce(&Job) -> Result<Finish, Failure> + Send>,
+    pub work: Work,
 }
 
 impl Bench {

@@ -26,30 +26,31 @@ pub struct Request {
 }
 
 impl Request {
-    fn choice(&self) -> Result<EffectChoice, Failure> {
-        match (&self.expression, &self.effect) {
-            (Some(text), _) => Ok(EffectChoice::expression(text)),
-            (None, Some(name)) => Ok(EffectChoice::named(name)),
+    /// The model's number and the effect.
+    fn subject(self) -> Result<(usize, EffectChoice), Failure> {
+        match (self.expression, self.effect) {
+            (Some(text), _) => Ok((self.model, EffectChoice::expression(&text))),
+            (None, Some(name)) => Ok((self.model, EffectChoice::named(&name))),
             (None, None) => Err(Failure::new("no effect is named").help("choose one, or write an expression")),
         }
     }
 }
 
 pub fn add(bench: &Arc<Bench>, request: Request) -> Result<(), Refusal> {
-    change(bench, &request, "add", &|change, effect| change.with(effect.clone()))
+    change(bench, request, "add", &|change, effect| change.with(effect.clone()))
 }
 
 pub fn remove(bench: &Arc<Bench>, request: Request) -> Result<(), Refusal> {
-    change(bench, &request, "remove", &|change, effect| change.without(effect))
+    change(bench, request, "remove", &|change, effect| change.without(effect))
 }
 
 type Effects<'a> = &'a dyn Fn(&Change, &EffectChoice) -> Result<Vec<EffectChoice>, Failure>;
 
-fn change(bench: &Arc<Bench>, request: &Request, verb: &str, effects: Effects) -> Result<(), Refusal> {
-    let effect = request.choice()?;
+fn change(bench: &Arc<Bench>, request: Request, verb: &str, effects: Effects) -> Result<(), Refusal> {
+    let (number, effect) = request.subject()?;
     let (model, campaign, origin) = {
         let session = bench.session();
-        let (measured, entry) = (measured(&session)?, entry(&session, request.model)?);
+        let (measured, entry) = (measured(&session)?, entry(&session, number)?);
         let file = session.new_file();
         let command = commands::change(verb, entry, &effect, &measured.data.command_line(), &file);
         let sign = if verb == "add" { "+" } else { "−" };

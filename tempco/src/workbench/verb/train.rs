@@ -17,8 +17,7 @@ pub fn run(bench: &Arc<Bench>, training: Training) -> Result<(), Refusal> {
     };
     let command = commands::train(&measured, &training, &file);
     let origin = Origin { file, parent: None, title: training.title(), command: command.clone() };
-    let settings = training.settings();
-    let work = Box::new(move |job: &Job| trained(job, &measured, &settings, origin));
+    let work = Box::new(move |job: &Job| trained(job, &measured, &training.settings(), origin));
     bench.start(Task { step: Step::Train, what: "Training".to_owned(), command, work })
 }
 
