@@ -16,7 +16,10 @@ const SHORT: &str = include_str!("scenarios/short.toml");
 
 /// A campaign in which these effects are hidden, each about so many times the noise, through a file as a user's would come.
 fn measured(hidden: &[&str], times_noise: f64, seed: u64) -> Campaign {
-    let mut scenario = Scenario::from_toml(SHORT).expect("a scenario");
+    recorded(Scenario::from_toml(SHORT).expect("a scenario"), hidden, times_noise, seed)
+}
+
+fn recorded(mut scenario: Scenario, hidden: &[&str], times_noise: f64, seed: u64) -> Campaign {
     for name in hidden {
         let options = BlindOptions {
             candidates: vec![(*name).to_owned()],
@@ -41,6 +44,12 @@ fn model(campaign: &Campaign) -> Model {
 
 fn diagnosis(hidden: &[&str], times_noise: f64, seed: u64) -> Diagnosis {
     let campaign = measured(hidden, times_noise, seed);
+    diagnose(&model(&campaign), &campaign, &Quiet).expect("a diagnosis")
+}
+
+/// The same of the scenario that tells all effects apart, with nothing in the open but the rig's perfection.
+fn rich_diagnosis(hidden: &[&str], times_noise: f64, seed: u64) -> Diagnosis {
+    let campaign = recorded(Scenario::preset("rich").expect("a scenario"), hidden, times_noise, seed);
     diagnose(&model(&campaign), &campaign, &Quiet).expect("a diagnosis")
 }
 
@@ -81,6 +90,28 @@ fn what_nobody_knows_is_called_unexplained() {
         let diagnosis = diagnosis(&[name], 5.0, seed);
         assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{name}: {diagnosis:#?}");
         assert!(diagnosis.findings.is_empty(), "{name}: {diagnosis:#?}");
+    }
+}
+
+#[test]
+fn the_unknown_gives_itself_away_by_the_day_by_the_pose_by_one_run() {
+    for (seed, name, on, period_s) in [
+        (13, "x-tide", "time_s", Some(86_400.0)),
+        (14, "x-magnetic", "position", None),
+        (15, "x-annealing-step", "run", None),
+    ] {
+        let diagnosis = rich_diagnosis(&[name], 2.0, seed);
+        assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{name}: {diagnosis:#?}");
+        let rest = diagnosis.unexplained.expect("it is described");
+        assert!(rest.depends_on.iter().any(|quantity| quantity == on), "{name}: {rest:?}");
+        assert!(period_s.is_none() || rest.period_s == period_s, "{name}: {rest:?}");
+    }
+}
+
+#[test]
+fn a_clock_is_told_from_a_scale_factor_that_ages_by_the_sum_of_the_frequencies() {
+    for (seed, name) in [(16, "reference-clock"), (17, "scale-factor-aging")] {
+        assert_eq!(named(&rich_diagnosis(&[name], 5.0, seed)), [name]);
     }
 }
 

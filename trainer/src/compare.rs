@@ -133,7 +133,9 @@ fn run_figures(model: &Model, run: &RunResiduals, held_out: bool) -> Option<RunF
     let readings_g: Vec<f64> = run.readings.iter().map(|reading| f64::from(reading.acceleration_g)).collect();
     let g_per_hz = mean_slope_g_per_hz(model);
     let raw_g: Vec<f64> = signal_hz.iter().map(|hz| hz * g_per_hz).collect();
-    let raw = figures(run.run, &raw_g, &raw_g, &signal_hz);
+    let raw_residuals_g: Vec<f64> =
+        raw_g.iter().zip(&run.run.rows).map(|(raw_g, row)| raw_g - row.reference_g).collect();
+    let raw = figures(run.run, &raw_g, &raw_residuals_g, &signal_hz);
     let compensated = figures(run.run, &readings_g, &run.residuals_g, &readings_g);
     let any = compensated.zero_bias.is_some() || compensated.full_temperature.is_some() || compensated.allan.is_some();
     any.then(|| RunFigures { run: run.run.name.clone(), held_out, raw, compensated })

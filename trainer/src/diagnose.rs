@@ -6,7 +6,7 @@
 //! noise_search its sizes                       candidate    every effect at every shape
 //!      └──────────── evidence: the score test ─────────────┘
 //!                        case: one campaign and one model, together
-//!          observable ─▶ search ─▶ judge ─▶ answer     held_out, dependence, period, separation
+//!          observable ─▶ search ─▶ judge ─▶ answer     held_out, dependence, telltale, period, separation
 //!                            plan: hypothesis, planned, distance
 //! ```
 //!
@@ -31,6 +31,7 @@ mod planned;
 mod search;
 mod separation;
 mod sum_channel;
+mod telltale;
 mod whitening;
 
 pub use answer::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexplained, Unobservable, Verdict};

@@ -183,14 +183,24 @@ fn chance(probability: f64) -> String {
 }
 
 fn noise(noise: &Noise) -> String {
-    let Noise { sample_ug, flicker_ug, wander_ug, walk_ug_per_sqrt_h, node_ug, position_ug, mounting_ug, run_ug } =
-        noise;
+    let Noise {
+        sample_ug,
+        flicker_ug,
+        wander_ug,
+        walk_ug_per_sqrt_h,
+        node_ug,
+        position_ug,
+        pose_ug,
+        mounting_ug,
+        run_ug,
+    } = noise;
     let parts = [
         (flicker_ug, "µg flicker"),
         (wander_ug, "µg wander within hours"),
         (walk_ug_per_sqrt_h, "µg/√h walk"),
         (node_ug, "µg from node to node"),
         (position_ug, "µg per g of tilt from position to position"),
+        (pose_ug, "µg from position to position"),
         (mounting_ug, "µg per g of tilt from mounting to mounting"),
         (run_ug, "µg from run to run"),
     ];

@@ -23,6 +23,8 @@ pub struct Case {
     pub hidden: Vec<Hidden>,
     /// Standard deviation of the noise of one 1 Hz sample, µg.
     pub sample_ug: f64,
+    /// All noise behind a perfect static compensation, µg.
+    pub noise_floor_ug: f64,
     pub recording: Recording,
     pub campaign: Campaign,
 }
@@ -51,7 +53,8 @@ impl Case {
         let campaign = read(&recording)?;
         let hidden = hidden(&truth, seed)?;
         let sample_ug = sample_ug(&recording);
-        Ok(Self { class, protocol, index, seed, rig, hidden, sample_ug, recording, campaign })
+        let noise_floor_ug = truth.noise_floor_ug;
+        Ok(Self { class, protocol, index, seed, rig, hidden, sample_ug, noise_floor_ug, recording, campaign })
     }
 
     /// The part of a hidden effect that counts, in units of the noise of one sample.

@@ -123,6 +123,8 @@ pub struct Noise {
     pub node_ug: f64,
     /// Per g across the input axis, from position to position, µg: table.
     pub position_ug: f64,
+    /// From position to position whatever lies across the input axis, µg: no table does that.
+    pub pose_ug: f64,
     /// Per g across the input axis, from run to run, µg: mounting.
     pub mounting_ug: f64,
     /// From run to run, µg: turn-on.

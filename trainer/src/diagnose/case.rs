@@ -239,7 +239,7 @@ impl Benches<'_> {
 const FREE: f64 = 1e2;
 
 /// Columns so large that what they absorb costs nothing.
-fn generous(columns: &Columns, unit: f64) -> Columns {
+pub(super) fn generous(columns: &Columns, unit: f64) -> Columns {
     let largest = |column: usize| columns.iter().map(|run| run.column(column).amax()).fold(0.0, f64::max);
     let scale = |column| if largest(column) > 0.0 { GENEROUS * unit / largest(column) } else { 0.0 };
     let scales: Vec<f64> = (0..width(columns)).map(scale).collect();

@@ -15,6 +15,8 @@ struct Quantity {
     values: Vec<Vec<f64>>,
 }
 
+/// What every static calibration follows.
+pub(super) const TEMPERATURE: &str = "temperature_c";
 /// Degree of the smooth functions, as polynomials of the quantity's rank.
 const DEGREE: usize = 6;
 
@@ -25,15 +27,20 @@ impl Case<'_> {
             Bench::new(&self.layout, noises.delta, &self.left(known).delta, &self.adapting(known).delta)
         };
         let (Some(before), Some(after)) = (bench(before), bench(after)) else { return Vec::new() };
-        let judged = |quantity: Quantity| {
-            let columns = smooth(&quantity.values)?;
+        let judged = |(on, columns): (String, Columns)| {
             let ((before_ug, chance_before), (after_ug, chance_after)) =
                 (follows(&before, &columns), follows(&after, &columns));
-            Some(Dependence { on: quantity.name, before_ug, after_ug, chance_before, chance_after })
+            Dependence { on, before_ug, after_ug, chance_before, chance_after }
         };
-        let mut all: Vec<Dependence> = self.quantities(channels).into_iter().filter_map(judged).collect();
+        let mut all: Vec<Dependence> = self.followed(channels).into_iter().map(judged).collect();
         all.sort_by(|a, b| b.before_ug.total_cmp(&a.before_ug));
         all
+    }
+
+    /// Every quantity that varies, and smooth functions of it.
+    pub fn followed(&self, channels: &[String]) -> Vec<(String, Columns)> {
+        let of = |quantity: Quantity| Some((quantity.name, smooth(&quantity.values)?));
+        self.quantities(channels).into_iter().filter_map(of).collect()
     }
 
     fn quantities(&self, channels: &[String]) -> Vec<Quantity> {
@@ -48,7 +55,7 @@ impl Case<'_> {
         };
         let first = |stretch: &Stretch, cell: &Cell| stretch.run.rows[cell.rows.start].sample;
         let mut found = vec![
-            of("temperature_c", &|_, cell| cell.t),
+            of(TEMPERATURE, &|_, cell| cell.t),
             of("temperature_rate", &rate),
             of("reference_g", &|_, cell| cell.level_g),
             of("time_s", &|_, cell| cell.time_s),

@@ -105,12 +105,6 @@ impl<'a> Bench<'a> {
         };
         residual.iter().zip(freedom).map(own).collect()
     }
-
-    /// The whitened residual with the instrument's freedom used to the full, cell by cell.
-    pub fn innovations(&self) -> Vec<Vec<f64>> {
-        let pairs = self.residual.iter().zip(&self.freedom);
-        pairs.map(|(residual, freedom)| (residual - freedom * &self.absorbed).as_slice().to_vec()).collect()
-    }
 }
 
 impl Score {

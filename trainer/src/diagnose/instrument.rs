@@ -145,6 +145,17 @@ impl Instrument {
         layout.stretches.par_iter().map(of).collect()
     }
 
+    /// How the reading of a smooth instrument can change, µg per expected change: polynomials alone.
+    pub fn smooth(&self, layout: &Layout) -> Columns {
+        let departure_ug = f64::from(self.model.scaling.output_g).abs() * UG;
+        let of = |stretch: &super::layout::Stretch| {
+            let rows: Vec<Vec<f64>> = stretch.cells.iter().map(|cell| polynomials(cell.x, cell.t)).collect();
+            let width = rows.first().map_or(0, Vec::len);
+            DMatrix::from_row_iterator(rows.len(), width, rows.into_iter().flatten().map(|value| value * departure_ug))
+        };
+        layout.stretches.par_iter().map(of).collect()
+    }
+
     /// Scatter of the static reading from sample to sample, µg.
     pub fn sample_ug(&self, layout: &Layout) -> Option<f64> {
         let residuals = |stretch: &super::layout::Stretch| -> Vec<f64> {

@@ -1,7 +1,7 @@
 //! The course of a diagnosis: from noise and candidates through one finding after the other to the verdict.
 
 use super::DiagnoseError;
-use super::answer::{Diagnosis, Estimate, Finding, Noise, Unexplained, Verdict};
+use super::answer::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexplained, Verdict};
 use super::candidate::{Candidate, name_of, with_channels};
 use super::case::{Case, Noises};
 use super::evidence::compressed;
@@ -12,7 +12,8 @@ use super::observable::{Screening, unobservable};
 use super::search::{Contender, Found};
 use super::separation::separate;
 use super::sum_channel::SumChannel;
-use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, POSITION, RUN, WALK, WANDER};
+use super::telltale::Telltale;
+use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, POSE, POSITION, RUN, WALK, WANDER};
 use crate::campaign::Campaign;
 use crate::fit::dataset::InputScale;
 use crate::model::Model;
@@ -23,6 +24,8 @@ use std::collections::BTreeMap;
 
 /// Evidence that an effect must have: twice the logarithm of the likelihood ratio beyond its parameters' price.
 const ENOUGH: f64 = 25.0;
+/// Effects with less are compared with structures that no effect has before they are believed.
+const WEAK: f64 = 400.0;
 /// Most findings.
 const MOST_FINDINGS: usize = 4;
 /// Effects whose evidence differs by less are confounded; and by less than this share, as no formula is exact.
@@ -153,6 +156,11 @@ fn search(
             found.formula = Some(next.winner);
             break;
         }
+        if next.winner.evidence < WEAK && case.strangest(&found.known, &next.noises) > next.winner.evidence {
+            // Something that no known effect does is more likely: the effect merely resembles it.
+            found.noises = next.noises;
+            break;
+        }
         let noises = next.winner.noises.unwrap_or(found.noises);
         let known = found.known.with(&next.winner.effect, &next.winner.values);
         let benches = case.benches(&case.left(&known), &case.stiff(&known), &noises).ok_or(DiagnoseError::NoNoise)?;
@@ -170,11 +178,13 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
     let before = case.held_out(start, &found.noises);
     let after_ug = |known: &Known| case.held_out(known, &found.noises).about_mean_ug;
     let futile = structured && after_ug(&found.known) > (1.0 - REMOVED) * before.about_mean_ug;
-    let unexplained = structured || found.strained > SURELY_STRAINED || found.formula.is_some();
     if futile {
         found.known = start.clone();
         found.steps.clear();
     }
+    let telltales = case.telltales(&found.known, &found.noises, &campaign.channels);
+    let unexplained =
+        structured || found.strained > SURELY_STRAINED || found.formula.is_some() || !telltales.is_empty();
     let dependences = case.dependences(start, &found.known, &found.noises, &campaign.channels);
     let residual_ug = before.residual_ug;
     let findings = findings(case, start, &found, residual_ug);
@@ -193,7 +203,7 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
         explainable: explainable(residual_ug, residual_after_ug, &found.noises.delta),
         findings,
         unobservable: Vec::new(),
-        unexplained: unexplained.then(|| case.unexplained(&found, structure_ug, &dependences, campaign)),
+        unexplained: unexplained.then(|| unexplained_rest(&found, structure_ug, &telltales, &dependences, campaign)),
         dependences,
         noise: noise(&found.noises.delta),
     }
@@ -258,6 +268,7 @@ fn noise(noise: &NoiseModel) -> Noise {
         walk_ug_per_sqrt_h: noise.parts[WALK] * 60.0,
         node_ug: noise.parts[NODE],
         position_ug: noise.parts[POSITION],
+        pose_ug: noise.parts[POSE],
         mounting_ug: noise.parts[MOUNTING],
         run_ug: noise.parts[RUN],
     }
@@ -281,33 +292,38 @@ impl Case<'_> {
         let pairs = moved.coefficients.values.iter().zip(&known.coefficients.values);
         pairs.map(|(up, here)| up.iter().zip(here).map(|(up, here)| (up - here).abs()).collect()).collect()
     }
+}
 
-    fn unexplained(
-        &self,
-        found: &Findings,
-        structure_ug: f64,
-        dependences: &[super::answer::Dependence],
-        campaign: &Campaign,
-    ) -> Unexplained {
-        let surely = dependences.iter().filter(|one| one.chance_after < SURELY && one.after_ug > 0.0);
-        let mut sizes: Vec<(f64, &String)> = surely.map(|one| (one.after_ug, &one.on)).collect();
-        sizes.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut depends_on: Vec<String> = sizes.into_iter().map(|(_, name)| name.clone()).collect();
-        let first = |name: &str, depends_on: &mut Vec<String>| {
-            depends_on.retain(|other| other != name);
-            depends_on.insert(0, name.to_owned());
-        };
-        if let Some(formula) = &found.formula {
-            let followed = campaign.channels.iter().enumerate().find(|(index, _)| formula.effect.follows(*index));
-            followed.into_iter().for_each(|(_, name)| first(name, &mut depends_on));
-            let formula = Some(name_of(&formula.effect).to_owned());
-            return Unexplained { depends_on, period_s: None, formula, residual_ug: structure_ug };
+/// What is left that nothing explains: what it follows, the surest sign first.
+fn unexplained_rest(
+    found: &Findings,
+    structure_ug: f64,
+    telltales: &[Telltale],
+    dependences: &[Dependence],
+    campaign: &Campaign,
+) -> Unexplained {
+    let surely = dependences.iter().filter(|one| one.chance_after < SURELY && one.after_ug > 0.0);
+    let mut sizes: Vec<(f64, &String)> = surely.map(|one| (one.after_ug, &one.on)).collect();
+    sizes.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let formula = found.formula.as_ref().map(|formula| name_of(&formula.effect).to_owned());
+    let is_followed = |index: usize| found.formula.as_ref().is_some_and(|formula| formula.effect.follows(index));
+    let followed = campaign.channels.iter().enumerate().filter(|(index, _)| is_followed(*index)).map(|(_, name)| name);
+    let told = telltales.iter().flat_map(|telltale| &telltale.depends_on);
+    let mut depends_on: Vec<String> = Vec::new();
+    for name in followed.chain(told).chain(sizes.into_iter().map(|(_, name)| name)) {
+        if !depends_on.contains(name) {
+            depends_on.push(name.clone());
         }
-        let period_s = self.period_s(&found.known, &found.noises);
-        if period_s.is_some() || depends_on.is_empty() {
-            first("time_s", &mut depends_on);
-        }
-        Unexplained { depends_on, period_s, formula: None, residual_ug: structure_ug }
+    }
+    if depends_on.is_empty() {
+        depends_on.push("time_s".to_owned());
+    }
+    let largest_ug = telltales.iter().map(|telltale| telltale.size_ug).fold(0.0, f64::max);
+    Unexplained {
+        depends_on,
+        period_s: telltales.iter().find_map(|telltale| telltale.period_s),
+        formula,
+        residual_ug: structure_ug.max(largest_ug),
     }
 }
 

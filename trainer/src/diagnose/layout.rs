@@ -52,6 +52,8 @@ pub(super) struct Layout<'a> {
     pub scale: InputScale,
     /// Longest gap across which a memory is carried, µs.
     pub max_gap_us: u32,
+    /// Index of the channel that says what lies across the input axis.
+    cross: Option<usize>,
 }
 
 /// References closer than this are the same position, g.
@@ -63,8 +65,18 @@ impl<'a> Layout<'a> {
     /// The cells of every run of the campaign.
     pub fn new(campaign: &'a Campaign, scale: InputScale, max_gap_us: u32) -> Self {
         let cross = campaign.channels.iter().position(|channel| channel == CROSS_CHANNEL);
-        let stretch = |run: &'a Run| Stretch { run, cells: cells_of(run, &scale, cross) };
-        Self { stretches: campaign.runs.iter().map(stretch).collect(), scale, max_gap_us }
+        let stretch = |run: &'a Run| Stretch { run, cells: cells_of(run, cells(run, &scale), &scale, cross) };
+        Self { stretches: campaign.runs.iter().map(stretch).collect(), scale, max_gap_us, cross }
+    }
+
+    /// The same with a cell for every sample.
+    pub fn by_sample(&self) -> Self {
+        let rows = |run: &Run| (0..run.rows.len()).map(|row| row..row + 1).collect();
+        let stretch = |one: &Stretch<'a>| Stretch {
+            run: one.run,
+            cells: cells_of(one.run, rows(one.run), &self.scale, self.cross),
+        };
+        Self { stretches: self.stretches.iter().map(stretch).collect(), ..*self }
     }
 
     /// Marks how much of what the effects' memories brought along from before each run is still there.
@@ -133,11 +145,11 @@ fn brought_along(stretch: &mut Stretch, memory: Memory<f64>) {
     }
 }
 
-fn cells_of(run: &Run, scale: &InputScale, cross: Option<usize>) -> Vec<Cell> {
+fn cells_of(run: &Run, rows: Vec<Range<usize>>, scale: &InputScale, cross: Option<usize>) -> Vec<Cell> {
     let start_us = run.rows.first().map_or(0, |row| row.sample.time_us);
     let mut found: Vec<Cell> = Vec::new();
     let mut last_cross_ug = 0;
-    for rows in cells(run, scale) {
+    for rows in rows {
         let datum = mean(&run.rows[rows.clone()], 0, scale);
         let times = run.rows[rows.clone()].iter().map(|row| (row.sample.time_us - start_us) as f64 * 1e-6);
         let cross_ug = cross.map(|channel| run.rows[rows.start].sample.channels[channel]);

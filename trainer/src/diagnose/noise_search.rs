@@ -78,7 +78,11 @@ fn improved(
     best
 }
 
+/// `None` at a bound, and for a part that is nothing at all: that is how a part is left out.
 fn changed(noise: &NoiseModel, part: usize, factor: f64) -> Option<NoiseModel> {
+    if noise.parts[part] == 0.0 {
+        return None;
+    }
     let mut next = *noise;
     let unit = if part == WALK { noise.sample / WALK_S.sqrt() } else { noise.sample };
     next.parts[part] = (noise.parts[part] * factor).clamp(LEAST * unit, MOST * unit);

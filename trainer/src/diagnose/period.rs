@@ -1,67 +1,223 @@
-//! Whether what is left swings with a period.
+//! Whether what is left swings with a period, be it of seconds or of days.
+//!
+//! A periodogram of the whitened residual, sample by sample and octave by octave. Phases may differ from run to run and
+//! drift within one: runs are cut into segments of [`PERIODS`], whose powers are added. Within an octave, samples are
+//! gathered in bins of an eighth of its shortest period, so that a long record costs no more than a short one.
 
 use super::case::{Case, Noises};
 use super::evidence::Bench;
 use super::instrument::Known;
+use super::layout::Cell;
+use super::telltale::Telltale;
+use super::whitening::Columns;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
 
+/// Periods of a segment.
+const PERIODS: f64 = 64.0;
 /// Frequencies per independent one.
 const OVERSAMPLING: f64 = 3.0;
-/// Most frequencies that are looked at.
-const MOST: usize = 4000;
-/// A peak must exceed what chance gives among all frequencies by this.
-const PEAK: f64 = 12.0;
+/// Bins to the shortest period of an octave.
+const BINS: f64 = 8.0;
+/// A segment must hold so many samples, and so many of the longest periods of its octave.
+const LEAST_SAMPLES: f64 = 8.0;
+const LEAST_PERIODS: f64 = 1.5;
+/// So many standard deviations above what chance gives on average are left to chance, before the best of all counts.
+const CHANCE: f64 = 4.0;
 
-impl Case<'_> {
-    /// The period of the whitened residual, s, if one frequency stands out. Phases may differ from run to run.
-    pub fn period_s(&self, known: &Known, noises: &Noises) -> Option<f64> {
-        let bench =
-            Bench::new(&self.layout, noises.delta.small(), &self.left(known).delta, &self.adapting(known).delta)?;
-        let innovations = bench.innovations();
-        let runs: Vec<(Vec<f64>, &Vec<f64>)> = self
-            .layout
-            .stretches
-            .iter()
-            .zip(&innovations)
-            .filter(|(stretch, _)| stretch.cells.len() >= LEAST_CELLS)
-            .map(|(stretch, values)| (stretch.cells.iter().map(|cell| cell.time_s).collect(), values))
-            .collect();
-        let longest_s = runs.iter().filter_map(|(times, _)| Some(times.last()? - times.first()?)).fold(0.0, f64::max);
-        let steps = runs.iter().flat_map(|(times, _)| times.windows(2).map(|pair| pair[1] - pair[0]));
-        let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
-        if steps.is_empty() || longest_s <= 0.0 {
-            return None;
-        }
-        steps.sort_unstable_by(f64::total_cmp);
-        let fastest = 0.5 / steps[steps.len() / 2];
-        let count = ((fastest * longest_s * OVERSAMPLING) as usize).min(MOST);
-        let powers = (3..=count).map(|k| k as f64 / (longest_s * OVERSAMPLING)).map(|frequency| {
-            let power: f64 = runs.iter().map(|(times, values)| power(times, values, frequency)).sum();
-            (frequency, power)
-        });
-        let (frequency, peak) = powers.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let (freedom, scale) = (runs.len() as f64, spread(&innovations));
-        let threshold = freedom + (2.0 * freedom).sqrt() * 4.0 + (count as f64).ln() + PEAK;
-        (peak / scale > threshold).then(|| frequency.recip())
+/// The whitened residual of one run: times from its beginning, s, and values.
+struct Course {
+    times_s: Vec<f64>,
+    values: Vec<f64>,
+    /// Between samples, median.
+    step_s: f64,
+}
+
+/// Samples gathered: mean time, sum of the values, how many.
+#[derive(Clone, Copy)]
+struct Bin {
+    time_s: f64,
+    sum: f64,
+    samples: f64,
+}
+
+/// One frequency's power: 1 a segment on average, if nothing swings.
+struct Peak {
+    frequency_hz: f64,
+    power: f64,
+    segments: f64,
+    samples: f64,
+}
+
+impl Peak {
+    fn excess(&self) -> f64 {
+        self.power - self.segments - CHANCE * (2.0 * self.segments).sqrt()
     }
 }
 
-/// Shorter runs have no period.
-const LEAST_CELLS: usize = 8;
-
-/// Periodogram at one frequency, 1 on average for white noise of variance one.
-fn power(times: &[f64], values: &[f64], frequency: f64) -> f64 {
-    let (mut sine, mut cosine) = (0.0, 0.0);
-    for (time, value) in times.iter().zip(values) {
-        let (s, c) = (2.0 * std::f64::consts::PI * frequency * time).sin_cos();
-        sine += s * value;
-        cosine += c * value;
+impl Case<'_> {
+    /// The swing that stands out most.
+    pub fn swing(&self, known: &Known, noises: &Noises) -> Option<Telltale> {
+        let courses = self.courses(known, noises)?;
+        let peaks = octaves(&courses);
+        let frequencies: usize = peaks.iter().map(|(count, _)| count).sum();
+        let scale = spread(&courses);
+        let peaks = peaks.into_iter().map(|(_, peak)| Peak { power: peak.power / scale, ..peak });
+        let best = peaks.max_by(|a, b| a.excess().total_cmp(&b.excess()))?;
+        Some(Telltale {
+            depends_on: vec!["time_s".to_owned()],
+            period_s: Some(best.frequency_hz.recip()),
+            evidence: 2.0 * (best.excess() - (frequencies as f64).ln()),
+            size_ug: self.sample_ug * (2.0 * (best.power - best.segments).max(0.0) * scale / best.samples).sqrt(),
+        })
     }
-    (sine * sine + cosine * cosine) / values.len() as f64
+
+    /// The residual sample by sample, what the instrument's freedom makes of it taken out; white but for what swings.
+    fn courses(&self, known: &Known, noises: &Noises) -> Option<Vec<Course>> {
+        let noise = noises.delta.calm();
+        let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
+        let adapted = Bench::new(&self.layout, noise, &left, &freedom)?.adapted(&left, &freedom);
+        let fine = self.layout.by_sample();
+        let mut values: Columns = self.instrument.residual_ug(&fine, &[&self.instrument.deeds(&fine, known)]);
+        for (run, stretch) in self.layout.stretches.iter().enumerate() {
+            for (index, cell) in stretch.cells.iter().enumerate() {
+                let change = adapted[run][(index, 0)] - left[run][(index, 0)];
+                cell.rows.clone().for_each(|row| values[run][(row, 0)] += change);
+            }
+        }
+        let white = noise.whiten(&fine, &values).columns;
+        let course = |(cells, values): (&Vec<Cell>, &[f64])| Course::new(cells, values);
+        let pairs = fine.stretches.iter().map(|stretch| &stretch.cells).zip(white.iter().map(|run| run.as_slice()));
+        Some(pairs.filter_map(course).collect())
+    }
+}
+
+impl Course {
+    /// `None` for a single sample.
+    fn new(cells: &[Cell], values: &[f64]) -> Option<Self> {
+        let times_s: Vec<f64> = cells.iter().map(|cell| cell.time_s).collect();
+        let mut steps: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0).collect();
+        steps.sort_unstable_by(f64::total_cmp);
+        let step_s = *steps.get(steps.len() / 2)?;
+        Some(Self { times_s, values: values.to_vec(), step_s })
+    }
+
+    fn seconds(&self) -> f64 {
+        self.times_s.last().copied().unwrap_or_default()
+    }
+
+    /// Cut into segments of `segment_s`, gathered in bins of `bin_s`; those that are long enough for `period_s`.
+    fn segments(&self, segment_s: f64, bin_s: f64, period_s: f64) -> Vec<Vec<Bin>> {
+        let mut found: Vec<(usize, Vec<Bin>)> = Vec::new();
+        for (time_s, value) in self.times_s.iter().zip(&self.values) {
+            let number = (time_s / segment_s) as usize;
+            if found.last().is_none_or(|(last, _)| *last != number) {
+                found.push((number, Vec::new()));
+            }
+            let Some((_, bins)) = found.last_mut() else { continue };
+            match bins.last_mut() {
+                Some(bin) if (bin.time_s / bin_s).floor() == (time_s / bin_s).floor() => bin.take(*time_s, *value),
+                _ => bins.push(Bin { time_s: *time_s, sum: *value, samples: 1.0 }),
+            }
+        }
+        let is_long = |bins: &Vec<Bin>| {
+            let (Some(first), Some(last)) = (bins.first(), bins.last()) else { return false };
+            let samples: f64 = bins.iter().map(|bin| bin.samples).sum();
+            last.time_s - first.time_s >= LEAST_PERIODS * period_s && samples >= LEAST_SAMPLES
+        };
+        found.into_iter().map(|(_, bins)| bins).filter(is_long).collect()
+    }
+}
+
+impl Bin {
+    fn take(&mut self, time_s: f64, value: f64) {
+        self.sum += value;
+        self.time_s += (time_s - self.time_s) / (self.samples + 1.0);
+        self.samples += 1.0;
+    }
+}
+
+/// Of every octave: how many frequencies were looked at, and the best.
+fn octaves(courses: &[Course]) -> Vec<(usize, Peak)> {
+    let longest_s = courses.iter().map(Course::seconds).fold(0.0, f64::max);
+    let fastest_hz = courses.iter().map(|course| 0.5 / course.step_s).fold(0.0, f64::max);
+    let slowest_hz = LEAST_PERIODS / longest_s.max(f64::MIN_POSITIVE);
+    let starts = std::iter::successors(Some(fastest_hz / 2.0), |start| Some(start / 2.0));
+    starts.take_while(|start| *start > slowest_hz).filter_map(|start| octave(courses, start, longest_s)).collect()
+}
+
+/// From `start_hz` to twice that.
+fn octave(courses: &[Course], start_hz: f64, longest_s: f64) -> Option<(usize, Peak)> {
+    let (longest_period_s, shortest_period_s) = (start_hz.recip(), 0.5 / start_hz);
+    let segment_s = (PERIODS * longest_period_s).min(longest_s * 1.01);
+    let resolved = courses.iter().filter(|course| course.step_s <= 0.5 * shortest_period_s * 1.01);
+    let segments: Vec<Vec<Bin>> =
+        resolved.flat_map(|course| course.segments(segment_s, shortest_period_s / BINS, longest_period_s)).collect();
+    if segments.is_empty() {
+        return None;
+    }
+    let count = (start_hz * segment_s * OVERSAMPLING).ceil() as usize;
+    let samples = segments.iter().flatten().map(|bin| bin.samples).sum();
+    let powers = (0..count).into_par_iter().map(|k| {
+        let frequency_hz = start_hz * (1.0 + k as f64 / count as f64);
+        (frequency_hz, segments.iter().map(|bins| power(bins, frequency_hz)).sum::<f64>())
+    });
+    let (frequency_hz, power) = powers.reduce(|| (start_hz, 0.0), |a, b| if b.1 > a.1 { b } else { a });
+    Some((count, Peak { frequency_hz, power, segments: segments.len() as f64, samples }))
+}
+
+/// Periodogram of one segment, 1 on average for white noise of variance one.
+fn power(bins: &[Bin], frequency_hz: f64) -> f64 {
+    let (mut sine, mut cosine, mut samples) = (0.0, 0.0, 0.0);
+    for bin in bins {
+        let (s, c) = (TAU * frequency_hz * bin.time_s).sin_cos();
+        sine += s * bin.sum;
+        cosine += c * bin.sum;
+        samples += bin.samples;
+    }
+    (sine * sine + cosine * cosine) / samples
 }
 
 /// Variance by the median: a few large values don't hide a swing.
-fn spread(innovations: &[Vec<f64>]) -> f64 {
-    let mut squares: Vec<f64> = innovations.iter().flatten().map(|value| value * value).collect();
+fn spread(courses: &[Course]) -> f64 {
+    let mut squares: Vec<f64> = courses.iter().flat_map(|course| &course.values).map(|value| value * value).collect();
     squares.sort_unstable_by(f64::total_cmp);
     squares.get(squares.len() / 2).map_or(1.0, |median| (median / 0.454_9).max(1e-12))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// White noise of variance one at every second, and a swing.
+    fn course(amplitude: f64, period_s: f64) -> Course {
+        let mut state = 7_u32;
+        let mut uniform = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 24) - 0.5
+        };
+        let noise: Vec<f64> = (0..4000).map(|_| (0..12).map(|_| uniform()).sum()).collect();
+        let times_s: Vec<f64> = (0..4000).map(f64::from).collect();
+        let swing = |time_s: &f64| amplitude * (TAU * time_s / period_s + 1.0).sin();
+        let values = times_s.iter().zip(noise).map(|(time_s, noise)| noise + swing(time_s)).collect();
+        Course { times_s, values, step_s: 1.0 }
+    }
+
+    fn best(course: Course) -> Peak {
+        octaves(&[course]).into_iter().map(|(_, peak)| peak).max_by(|a, b| a.excess().total_cmp(&b.excess())).unwrap()
+    }
+
+    #[test]
+    fn a_swing_of_half_the_noise_stands_out_at_its_period_and_noise_does_not() {
+        for period_s in [5.3, 61.0, 412.0, 1500.0] {
+            let peak = best(course(0.5, period_s));
+            assert!(peak.excess() > 50.0, "{period_s}: {}", peak.excess());
+            assert!(
+                (peak.frequency_hz.recip() / period_s - 1.0).abs() < 0.1,
+                "{period_s}: {}",
+                peak.frequency_hz.recip()
+            );
+        }
+        assert!(best(course(0.0, 61.0)).excess() < 9.0);
+    }
 }

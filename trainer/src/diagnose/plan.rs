@@ -12,7 +12,7 @@ use super::hypothesis::{fitted, typical};
 use super::instrument::Known;
 use super::judge::{case, in_model};
 use super::planned::joint;
-use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, PARTS, POSITION, RUN, WALK, WANDER};
+use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, PARTS, POSE, POSITION, RUN, WALK, WANDER};
 use super::{DiagnoseError, candidate::with_channels};
 use crate::campaign::{Campaign, Quantity, Run};
 use crate::fit::effects::Chosen;
@@ -328,11 +328,12 @@ fn known(model: &Model, campaign: &Campaign, diagnosis: &Diagnosis, names: &[Str
 /// The noise that the diagnosis found.
 fn noise(diagnosis: &Diagnosis, per_c: f64) -> NoiseModel {
     let found = &diagnosis.noise;
-    let mut parts = [0.0; PARTS];
+    let mut parts = [found.sample_ug; PARTS];
     for (part, sigma) in [
         (RUN, found.run_ug),
         (MOUNTING, found.mounting_ug),
         (POSITION, found.position_ug),
+        (POSE, found.pose_ug),
         (NODE, found.node_ug),
         (FLICKER, found.flicker_ug),
         (WANDER, found.wander_ug),

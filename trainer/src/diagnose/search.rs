@@ -83,9 +83,14 @@ const REFINEMENTS: usize = 4;
 const FORETOLD: f64 = 0.25;
 /// A shape this close to its bound, as a ratio, was stopped by it.
 const AT_BOUND: f64 = 1.05;
-/// Effects whose formula has a limit at a bound that makes sense: a rate not smoothed, a drift that does not end.
-const GOOD_LIMITS: [(&str, &str, Side); 3] =
-    [("thermal-gradient", "tau_s", Side::Low), ("aging", "tau_days", Side::High), ("aging", "order", Side::High)];
+/// Effects whose formula has a limit at a bound that makes sense: a rate not smoothed, a drift that does not end or that
+/// slows down as diffusion does.
+const GOOD_LIMITS: [(&str, &str, Side); 4] = [
+    ("thermal-gradient", "tau_s", Side::Low),
+    ("aging", "tau_days", Side::High),
+    ("aging", "order", Side::High),
+    ("aging", "order", Side::Low),
+];
 
 #[derive(Clone, Copy, PartialEq)]
 enum Side {

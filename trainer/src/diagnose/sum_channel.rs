@@ -95,10 +95,11 @@ impl SumChannel {
     pub fn residual_under(&self, layout: &Layout, deeds: &[&Deeds]) -> Columns {
         let mut residual = self.residual.clone();
         for (run, (row, cells)) in residual.iter_mut().zip(&self.cells).enumerate() {
-            for (index, (slope, sum)) in cells.iter().enumerate() {
-                let deed = deeds.iter().fold(Deed::default(), |all, deeds| all.plus(&deeds[run][index]));
-                let cell = &layout.stretches[run].cells[index];
-                row[(index, 0)] -= slope * deed.temperature_c + clock_share(layout, cell, &deed) * sum;
+            let of = |index| deeds.iter().fold(Deed::default(), |all, deeds| all.plus(&deeds[run][index]));
+            let deeds: Vec<Deed> = (0..cells.len()).map(of).collect();
+            let shares = clock_shares(layout, &layout.stretches[run].cells, &deeds);
+            for (index, ((slope, sum), (deed, share))) in cells.iter().zip(deeds.iter().zip(shares)).enumerate() {
+                row[(index, 0)] -= slope * deed.temperature_c + share * sum;
             }
         }
         residual
@@ -123,11 +124,21 @@ impl SumChannel {
     }
 }
 
-/// By which fraction a clock would have to be off for what it does to the difference; only clocks move the difference
-/// in proportion to itself, so other effects' deeds must not come here.
-fn clock_share(layout: &Layout, cell: &Cell, deed: &Deed) -> f64 {
-    let delta_f_hz = layout.scale.delta_f_zero_uhz as f64 * 1e-6 + cell.x * layout.scale.delta_f_half_span_hz;
-    if deed.delta_f_hz == 0.0 || delta_f_hz.abs() < LEAST_DELTA_F_HZ { 0.0 } else { deed.delta_f_hz / delta_f_hz }
+/// By which fraction a clock would have to be off in each cell for what it does to the difference; only clocks move the
+/// difference in proportion to itself, so other effects' deeds must not come here. Where the difference is too small to
+/// tell, the clock is as it was a moment ago.
+fn clock_shares(layout: &Layout, cells: &[Cell], deeds: &[Deed]) -> Vec<f64> {
+    let delta_f_hz =
+        |cell: &Cell| layout.scale.delta_f_zero_uhz as f64 * 1e-6 + cell.x * layout.scale.delta_f_half_span_hz;
+    let tells = |cell: &&Cell| delta_f_hz(cell).abs() >= LEAST_DELTA_F_HZ;
+    let share = |(cell, deed): (&Cell, &Deed)| tells(&cell).then(|| deed.delta_f_hz / delta_f_hz(cell));
+    let told: Vec<Option<f64>> = cells.iter().zip(deeds).map(share).collect();
+    let first = told.iter().flatten().next().copied().unwrap_or_default();
+    let last = |last: &mut f64, told: &Option<f64>| {
+        *last = told.unwrap_or(*last);
+        Some(*last)
+    };
+    told.iter().scan(first, last).collect()
 }
 
 /// Below this the ratio means nothing.

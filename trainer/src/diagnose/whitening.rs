@@ -25,7 +25,7 @@ pub(super) struct NoiseModel {
 }
 
 /// How many parts there are.
-pub(super) const PARTS: usize = 8;
+pub(super) const PARTS: usize = 9;
 /// From run to run.
 pub(super) const RUN: usize = 0;
 /// From run to run, per g across the input axis.
@@ -42,6 +42,8 @@ pub(super) const WANDER: usize = 5;
 pub(super) const WALK: usize = 6;
 /// What effects with a memory brought along from before the run.
 pub(super) const BEGINNING: usize = 7;
+/// From position to position, whatever acceleration lies across the input axis: no table does that.
+pub(super) const POSE: usize = 8;
 
 /// Correlation times of the two octaves of flicker and of the wander, s.
 const TAUS_S: [f64; 3] = [60.0, 600.0, 5000.0];
@@ -74,6 +76,7 @@ enum Kind {
     Fading(f64),
     Walk,
     Beginning,
+    Pose,
 }
 
 /// The filter's work at one cell, the same for every column.
@@ -109,9 +112,17 @@ impl NoiseModel {
         small
     }
 
+    /// The same with no wander larger than the sample noise: what swings is taken for wander otherwise.
+    pub fn calm(&self) -> Self {
+        let mut calm = *self;
+        let small = self.small();
+        [FLICKER, WANDER, WALK].into_iter().for_each(|part| calm.parts[part] = small.parts[part]);
+        calm
+    }
+
     /// The states that make a difference.
     fn states(&self) -> Vec<State> {
-        let [run, mounting, position, node, flicker, wander, walk, beginning] = self.parts;
+        let [run, mounting, position, node, flicker, wander, walk, beginning, pose] = self.parts;
         let [fast, slow, slowest] = TAUS_S.map(Kind::Fading);
         let all = [
             (Kind::Run, run),
@@ -123,6 +134,7 @@ impl NoiseModel {
             (slowest, wander),
             (Kind::Walk, walk * 60.0),
             (Kind::Beginning, beginning),
+            (Kind::Pose, pose),
         ];
         let matters = |&(_, sigma): &(Kind, f64)| sigma > self.sample * NOTHING;
         let state = |(kind, sigma): (Kind, f64)| State { kind, variance: sigma * sigma };
@@ -179,7 +191,7 @@ impl Kind {
     /// Which share of it is kept on the way to a cell.
     fn kept(self, cell: &Cell, dt_s: f64) -> f64 {
         match self {
-            Self::Position if cell.new_position => 0.0,
+            Self::Position | Self::Pose if cell.new_position => 0.0,
             Self::Node if cell.new_node => 0.0,
             Self::Fading(tau_s) => (-dt_s / tau_s).exp(),
             _ => 1.0,

@@ -47,8 +47,18 @@ pub const Z6: Definition = Definition {
 /// Of one recording at rest.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stability {
-    /// The definition and the figure, µg.
-    pub figures: Vec<(Definition, f64)>,
+    /// By definition.
+    pub figures: Vec<StabilityFigure>,
+}
+
+/// One figure.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StabilityFigure {
+    /// What it is.
+    #[serde(flatten)]
+    pub definition: Definition,
+    /// Its value, µg.
+    pub value_ug: f64,
 }
 
 /// Settled after this, s.
@@ -85,8 +95,9 @@ pub fn stability(run: &Run, outputs_g: &[f64], allan: Option<&[AllanPoint]>) -> 
         Some((Z4, deviation_ug(&without_drift(&settled)))),
         allan.map(|points| (Z6, least_ug(points))),
     ];
-    let figures =
-        candidates.into_iter().flatten().filter_map(|(definition, figure)| Some((definition, figure?))).collect();
+    let figure =
+        |(definition, value_ug): (Definition, Option<f64>)| Some(StabilityFigure { definition, value_ug: value_ug? });
+    let figures = candidates.into_iter().flatten().filter_map(figure).collect();
     Stability { figures }
 }
 
@@ -129,7 +140,7 @@ mod tests {
     }
 
     fn figure(stability: &Stability, id: &str) -> Option<f64> {
-        stability.figures.iter().find(|(definition, _)| definition.id == id).map(|(_, figure)| *figure)
+        stability.figures.iter().find(|figure| figure.definition.id == id).map(|figure| figure.value_ug)
     }
 
     #[test]
@@ -152,7 +163,7 @@ mod tests {
     fn a_short_recording_has_no_figure_that_needs_a_long_one() {
         let stability = stability(&run(1210), &vec![0.0; 1210], None);
         assert_eq!(
-            stability.figures.iter().map(|(definition, _)| definition.id).collect::<Vec<_>>(),
+            stability.figures.iter().map(|figure| figure.definition.id).collect::<Vec<_>>(),
             ["Z2 from the start"]
         );
     }

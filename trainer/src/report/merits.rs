@@ -2,6 +2,7 @@
 
 use crate::compare::{Comparison, Figures, RunFigures};
 use crate::metrics::full_temperature::{self, FullTemperature};
+use crate::metrics::stability::{Definition, StabilityFigure};
 use serde::Serialize;
 
 /// One figure, before and after.
@@ -42,8 +43,9 @@ pub fn merits(comparison: &Comparison, raw_residual_ug: f64) -> Vec<Merit> {
 fn stability(run: &RunFigures) -> Vec<Merit> {
     let (Some(raw), Some(compensated)) = (&run.raw.stability, &run.compensated.stability) else { return Vec::new() };
     let pairs = raw.figures.iter().zip(&compensated.figures);
-    let merit = |((definition, raw), (_, compensated)): (&(crate::metrics::stability::Definition, f64), &(_, f64))| {
-        of_run(run, definition.id, definition.what, "µg", [*raw, *compensated])
+    let merit = |(raw, compensated): (&StabilityFigure, &StabilityFigure)| {
+        let Definition { id, what } = raw.definition;
+        of_run(run, id, what, "µg", [raw.value_ug, compensated.value_ug])
     };
     pairs.map(merit).collect()
 }

@@ -1,0 +1,240 @@
+//! Structure that neither noise nor a known effect makes: whoever sees it knows that something is missing, not what.
+//!
+//! ```text
+//! the day          the same course every 24 h or tide, by the calendar
+//! one run          its own course over temperature, unlike all other runs
+//! a kink           at 0 g, where a smooth instrument has none
+//! a quantity       a smooth function of the level, of time, of a channel
+//! a period         whatever its phase (`period`)
+//! poses            a scatter from position to position that no table explains
+//! ```
+//!
+//! Each is judged as an effect is: fitted, the noise estimated again with it, and its evidence weighed. It must also be
+//! of a size that matters, because no formula is exact.
+
+use super::case::{Case, Noises, generous};
+use super::dependence::TEMPERATURE;
+use super::evidence::{Bench, Score, joined, stacked, width};
+use super::instrument::Known;
+use super::layout::{Cell, Stretch};
+use super::noise_search::noise;
+use super::whitening::{Columns, NoiseModel, POSE};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+/// What gives away that something is missing.
+#[derive(Clone, Debug)]
+pub(super) struct Telltale {
+    /// The quantities that it depends on.
+    pub depends_on: Vec<String>,
+    /// Its period, if it has one.
+    pub period_s: Option<f64>,
+    /// Twice the gain in log likelihood, less what its amplitudes are worth.
+    pub evidence: f64,
+    /// Size of what the instrument can't absorb of it, in all samples, µg RMS.
+    pub size_ug: f64,
+}
+
+/// A structure to look for.
+struct Suspect {
+    depends_on: Vec<String>,
+    period_s: Option<f64>,
+    columns: Columns,
+    /// Whether only a smooth instrument may absorb it, not whatever a network may be bent to.
+    smooth: bool,
+}
+
+/// Evidence that a structure must have; there are a hundred to choose from.
+const ENOUGH: f64 = 30.0;
+/// And its size, in units of the noise of a sample.
+const MATTERS: f64 = 0.5;
+/// So many are judged in full, by the noise as estimated and by a small one.
+const FINALISTS: usize = 3;
+/// How often amplitudes and noise are fitted in turn.
+const TURNS: usize = 2;
+/// A run that covers less than this of the scaled temperature has no course over it.
+const LEAST_COURSE: f64 = 0.1;
+/// The solar day and the moon's half day, s.
+const DAYS_S: [f64; 2] = [86_400.0, 44_714.0];
+/// A swing by the calendar must have been followed this long in all, in periods.
+const LEAST_PERIODS: f64 = 1.5;
+
+impl Case<'_> {
+    /// Everything that gives away something missing beside these effects, the surest first.
+    pub fn telltales(&self, known: &Known, noises: &Noises, channels: &[String]) -> Vec<Telltale> {
+        let left = self.left(known).delta;
+        let freedom = self.adapting(known).delta;
+        let scene = Scene { case: self, noise: noises.delta, left: &left, freedom: &freedom };
+        let mut suspects = self.structures();
+        let other = self.followed(channels).into_iter().filter(|(name, _)| name != TEMPERATURE);
+        suspects.extend(other.map(|(name, columns)| Suspect {
+            depends_on: vec![name],
+            period_s: None,
+            columns,
+            smooth: false,
+        }));
+        let mut found = scene.followed(&suspects);
+        found.extend(scene.poses());
+        found.extend(self.swing(known, noises));
+        found.retain(|one| one.evidence > ENOUGH && one.size_ug > MATTERS * self.sample_ug);
+        found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        found
+    }
+
+    /// Most evidence of a structure that no known effect has, where these effects are at work.
+    pub fn strangest(&self, known: &Known, noises: &Noises) -> f64 {
+        let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
+        let scene = Scene { case: self, noise: noises.delta, left: &left, freedom: &freedom };
+        scene.followed(&self.structures()).iter().map(|one| one.evidence).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    fn structures(&self) -> Vec<Suspect> {
+        let mut all = self.days();
+        all.extend(self.odd_runs());
+        all.push(self.kink());
+        all
+    }
+
+    /// Columns with a value in each cell.
+    fn columns<const N: usize>(&self, of: impl Fn(usize, &Stretch, &Cell) -> [f64; N]) -> Columns {
+        let run = |(index, stretch): (usize, &Stretch)| {
+            let rows = stretch.cells.iter().flat_map(|cell| of(index, stretch, cell));
+            DMatrix::from_row_iterator(stretch.cells.len(), N, rows)
+        };
+        self.layout.stretches.iter().enumerate().map(run).collect()
+    }
+
+    /// Swings by the calendar: of the bias, or of a rig that leans, which shows across the input axis only.
+    fn days(&self) -> Vec<Suspect> {
+        let dated =
+            self.layout.stretches.iter().all(|stretch| stretch.run.rows.iter().all(|row| row.sample.age_s.is_some()));
+        let followed_s = |stretch: &Stretch| stretch.cells.last().map_or(0.0, |cell| cell.time_s);
+        let followed_s: f64 = self.layout.stretches.iter().map(followed_s).sum();
+        let periods = DAYS_S.into_iter().filter(|period_s| dated && followed_s > LEAST_PERIODS * period_s);
+        let swing = |period_s: f64, leans: bool| Suspect {
+            depends_on: vec!["time_s".to_owned()],
+            period_s: Some(period_s),
+            columns: self.columns(|_, stretch, cell| {
+                let first = &stretch.run.rows[0].sample;
+                let phase = (f64::from(first.age_s.unwrap_or(0)) + cell.time_s) / period_s * std::f64::consts::TAU;
+                let size = self.sample_ug * if leans { cell.cross_g } else { 1.0 };
+                [phase.sin() * size, phase.cos() * size]
+            }),
+            smooth: false,
+        };
+        periods.flat_map(|period_s| [swing(period_s, false), swing(period_s, true)]).collect()
+    }
+
+    /// For each run, a course over temperature of its own.
+    fn odd_runs(&self) -> Vec<Suspect> {
+        let span = |stretch: &Stretch| {
+            let each = || stretch.cells.iter().map(|cell| cell.t);
+            each().fold(f64::MIN, f64::max) - each().fold(f64::MAX, f64::min)
+        };
+        let courses = self.layout.stretches.iter().enumerate().filter(|(_, stretch)| span(stretch) > LEAST_COURSE);
+        courses
+            .map(|(odd, stretch)| {
+                let cells = stretch.cells.len().max(1) as f64;
+                let middle = stretch.cells.iter().map(|cell| cell.t).sum::<f64>() / cells;
+                let of = |index: usize, _: &Stretch, cell: &Cell| {
+                    [if index == odd { (cell.t - middle) * self.sample_ug } else { 0.0 }]
+                };
+                Suspect {
+                    depends_on: vec!["run".to_owned(), "temperature_c".to_owned()],
+                    period_s: None,
+                    columns: self.columns(of),
+                    smooth: false,
+                }
+            })
+            .collect()
+    }
+
+    /// An asymmetry of the two directions (IEEE Std 1293: K0', K1', K_oq).
+    fn kink(&self) -> Suspect {
+        let of = |_: usize, _: &Stretch, cell: &Cell| [cell.level_g.abs(), cell.level_g * cell.level_g.abs()];
+        let columns = self.columns(of).into_iter().map(|run| run * self.sample_ug).collect();
+        Suspect { depends_on: vec!["reference_g".to_owned()], period_s: None, columns, smooth: true }
+    }
+}
+
+/// What stays the same while suspects are compared.
+struct Scene<'a> {
+    case: &'a Case<'a>,
+    noise: NoiseModel,
+    left: &'a Columns,
+    freedom: &'a Columns,
+}
+
+impl Scene<'_> {
+    fn bench(&self, noise: NoiseModel, left: &Columns, freedom: &Columns) -> Option<Bench<'_>> {
+        Bench::new(&self.case.layout, noise, left, freedom)
+    }
+
+    /// The most striking suspects, judged in full.
+    fn followed(&self, suspects: &[Suspect]) -> Vec<Telltale> {
+        let (smooth, free): (Vec<&Suspect>, Vec<&Suspect>) = suspects.iter().partition(|suspect| suspect.smooth);
+        let mut finalists = smooth;
+        for noise in [self.noise, self.noise.small()] {
+            for suspect in self.screened(noise, &free) {
+                if !finalists.iter().any(|other| std::ptr::eq(*other, suspect)) {
+                    finalists.push(suspect);
+                }
+            }
+        }
+        finalists.into_par_iter().filter_map(|suspect| self.judged(suspect)).collect()
+    }
+
+    fn screened<'s>(&self, noise: NoiseModel, suspects: &[&'s Suspect]) -> Vec<&'s Suspect> {
+        let Some(bench) = self.bench(noise, self.left, self.freedom) else { return Vec::new() };
+        let widths: Vec<usize> = suspects.iter().map(|suspect| width(&suspect.columns)).collect();
+        let columns = joined(suspects.iter().map(|suspect| &suspect.columns));
+        let price = |width: usize| self.case.price() * width as f64;
+        let gains = bench.scores(&columns, &widths).into_iter().map(|score: Score| score.gain());
+        let mut order: Vec<(f64, &Suspect)> =
+            gains.zip(&widths).zip(suspects).map(|((gain, width), suspect)| (gain - price(*width), *suspect)).collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0));
+        order.into_iter().take(FINALISTS).map(|(_, suspect)| suspect).collect()
+    }
+
+    /// Fits amplitudes and noise in turn.
+    fn judged(&self, suspect: &Suspect) -> Option<Telltale> {
+        let smooth = suspect.smooth.then(|| self.case.instrument.smooth(&self.case.layout));
+        let freedom = smooth.as_ref().unwrap_or(self.freedom);
+        let widened = stacked(freedom, &generous(&suspect.columns, self.case.sample_ug));
+        let (mut with, mut fitted, mut size_ug) = (self.noise, self.left.clone(), 0.0);
+        for _ in 0..TURNS {
+            let score = self.bench(with, self.left, freedom)?.score(&suspect.columns);
+            let amplitudes = DMatrix::from_column_slice(width(&suspect.columns), 1, score.amplitudes()?.as_slice());
+            let course: Columns = suspect.columns.iter().map(|run| run * &amplitudes).collect();
+            let beyond = self.bench(with, &course, freedom)?.adapted(&course, freedom);
+            size_ug = self.case.rms_ug(&beyond);
+            fitted = self.left.iter().zip(&course).map(|(left, course)| left + course).collect();
+            with = noise(&self.case.layout, &fitted, &widened, with, false);
+        }
+        let without = noise(&self.case.layout, self.left, freedom, self.noise, false);
+        let gain = self.bench(without, self.left, freedom)?.deviance - self.bench(with, &fitted, freedom)?.deviance;
+        let evidence = gain - self.case.price() * width(&suspect.columns) as f64;
+        Some(Telltale { depends_on: suspect.depends_on.clone(), period_s: suspect.period_s, evidence, size_ug })
+    }
+
+    /// Whether the noise is less likely without a scatter that every position has of its own.
+    fn poses(&self) -> Option<Telltale> {
+        let mut start = self.noise;
+        start.parts[POSE] = 0.0;
+        let without = noise(&self.case.layout, self.left, self.freedom, start, false);
+        let with = self.bench(self.noise, self.left, self.freedom)?.deviance;
+        let evidence = self.bench(without, self.left, self.freedom)?.deviance - with - self.case.price();
+        let depends_on = vec!["reference_g".to_owned(), "position".to_owned()];
+        Some(Telltale { depends_on, period_s: None, evidence, size_ug: self.noise.parts[POSE] })
+    }
+}
+
+impl Case<'_> {
+    /// RMS over the samples, µg.
+    fn rms_ug(&self, course: &Columns) -> f64 {
+        let pairs = self.layout.cells().zip(course.iter().flat_map(|run| run.iter()));
+        let (squares, samples) = pairs
+            .fold((0.0, 0.0), |(sum, all), (cell, value)| (sum + cell.samples * value * value, all + cell.samples));
+        (squares / f64::max(samples, 1.0)).sqrt()
+    }
+}
