@@ -1,22 +1,23 @@
 //! One verb, one file.
 
 mod add;
-mod change;
+pub mod change;
 mod compare;
-mod demo;
+pub mod demo;
 mod device;
 mod diagnose;
 mod effects;
-mod export;
+pub mod export;
 mod flash;
-mod inspect;
-mod plan;
+pub mod inspect;
+pub mod plan;
 mod remove;
 mod reproduce;
-mod reveal;
+pub mod reveal;
 mod simulate;
-mod train;
-mod verify;
+pub mod train;
+pub mod verify;
+mod workbench;
 
 use crate::failure::{Answer, Failure};
 use clap::Subcommand;
@@ -40,6 +41,7 @@ pub enum Command {
     Flash(flash::Flash),
     Device(device::Device),
     Reproduce(reproduce::Reproduce),
+    Workbench(workbench::Workbench),
 }
 
 impl Command {
@@ -61,6 +63,7 @@ impl Command {
             Self::Flash(command) => command.run(),
             Self::Device(command) => command.run(),
             Self::Reproduce(command) => command.run(),
+            Self::Workbench(command) => command.run(),
         }
     }
 }

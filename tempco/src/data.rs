@@ -6,18 +6,18 @@ use std::path::PathBuf;
 use trainer::campaign::{Campaign, HoldOut, Measured, ReadOptions};
 
 /// Where the measurements are, and how to read them.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Data {
     /// Campaign: CSV files, or folders of them
     #[arg(required = true, value_name = "DATA")]
     pub files: Vec<PathBuf>,
 
     #[command(flatten)]
-    reading: Reading,
+    pub reading: Reading,
 }
 
 /// How to read measurements.
-#[derive(Args)]
+#[derive(Args, Clone, Default)]
 pub struct Reading {
     /// Reads a column under another name, with a factor and an offset if need be: `delta_f_hz=FreqDiff`, `time_s=t_ms*0.001`
     #[arg(long, value_name = "NAME=COLUMN")]
@@ -102,7 +102,7 @@ impl Reading {
 }
 
 /// As a shell takes it for one word.
-fn quoted(word: &str) -> String {
+pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./=,+:".contains(c);
     if word.chars().all(plain) { word.to_owned() } else { format!("'{word}'") }
 }
@@ -112,7 +112,7 @@ fn measured(column: Option<&String>, unit: Option<&String>) -> Option<Measured> 
 }
 
 /// Which runs to keep from training.
-#[derive(Args)]
+#[derive(Args, Clone, Default)]
 pub struct HeldOut {
     /// Runs to keep from training, or `none`; without it the last run of each kind that has two or more
     #[arg(long, value_name = "RUN,…", value_delimiter = ',')]

@@ -1,5 +1,6 @@
 //! Why a command could not do what it was asked, and the way out.
 
+use serde::Serialize;
 use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
@@ -24,7 +25,7 @@ impl From<Answer> for ExitCode {
 }
 
 /// An error with a sentence that says what to do.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Failure {
     message: String,
     help: Option<String>,

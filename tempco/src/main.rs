@@ -17,6 +17,7 @@ mod render;
 mod report;
 mod subject;
 mod table;
+mod workbench;
 
 use clap::Parser;
 use std::process::ExitCode;

@@ -27,6 +27,16 @@ const FLAGS: [&str; 12] = [
     "about:blank",
 ];
 const NAMES: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
+/// Keys that a browser knows by number.
+const KEYS: [(&str, u8); 7] = [
+    ("Tab", 9),
+    ("Enter", 13),
+    ("Escape", 27),
+    ("ArrowLeft", 37),
+    ("ArrowUp", 38),
+    ("ArrowRight", 39),
+    ("ArrowDown", 40),
+];
 /// How long a busy machine may take for an answer.
 const PATIENCE: Duration = Duration::from_secs(60);
 const LOOK: Duration = Duration::from_millis(50);
@@ -116,11 +126,16 @@ impl Chromium {
         self.call("Input.dispatchMouseEvent", &event);
     }
 
-    /// A key, pressed and released.
+    /// A key, pressed and released, with all that a browser does of itself: Tab moves on, Enter presses.
     pub fn key(&mut self, key: &str) {
-        for kind in ["keyDown", "keyUp"] {
-            self.call("Input.dispatchKeyEvent", &json!({ "type": kind, "key": key }));
+        let code = KEYS.iter().find(|(name, _)| *name == key).map_or(0, |(_, code)| *code);
+        let mut event = json!({ "type": "keyDown", "key": key, "code": key, "windowsVirtualKeyCode": code });
+        if key == "Enter" {
+            event["text"] = json!("\r");
         }
+        self.call("Input.dispatchKeyEvent", &event);
+        event["type"] = json!("keyUp");
+        self.call("Input.dispatchKeyEvent", &event);
     }
 
     /// The whole page as PNG.

@@ -23,6 +23,7 @@ pub mod diagnose;
 pub mod expression;
 pub mod fit;
 pub mod ladder;
+pub mod linked;
 pub mod metrics;
 pub mod model;
 pub mod noise;

@@ -167,6 +167,7 @@ pub fn train(
 /// The model of a task that is ready to be fitted.
 fn fitted(campaign: &Campaign, split: &Split, task: Task) -> Result<Trained, TrainError> {
     let (settings, progress) = (task.settings, task.progress);
+    progress.begins(settings.restarts);
     let Search { restarts, best } = match &settings.method {
         Method::SecondOrder => second_order::search(&task),
         Method::Backprop(backprop) => backprop::search(&task, backprop)?,

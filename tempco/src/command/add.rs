@@ -5,6 +5,7 @@ use crate::failure::{Answer, Failure};
 use crate::subject::Subject;
 use clap::Args;
 use std::path::PathBuf;
+use trainer::model::Model;
 use trainer::train::EffectChoice;
 
 /// Adds a physical effect to a model, retrains everything together, and shows how far the residual falls.
@@ -33,13 +34,9 @@ pub struct Add {
 
 impl Add {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let change = Change::read(&self.model, &self.subject)?;
-        let mut effects = EffectChoice::of(&change.model);
-        let new = EffectChoice { channel: self.channel.clone(), ..self.subject.effect() };
-        if effects.iter().any(|choice| choice.is_same(&new)) {
-            return Err(Failure::new(format_args!("the model has the effect `{}` already", new.title())));
-        }
-        effects.push(new);
+        let (model, campaign) = (Model::read(&self.model)?, self.subject.read()?);
+        let change = Change::of(&model, &campaign)?;
+        let effects = change.with(EffectChoice { channel: self.channel.clone(), ..self.subject.effect() })?;
         ladder(&change, &effects, &self.output, self.json)
     }
 }

@@ -3,26 +3,31 @@
 use super::train::train_with_bar;
 use crate::failure::{Answer, Failure};
 use crate::render;
-use crate::subject::Subject;
 use crate::table::Table;
 use std::path::Path;
 use trainer::campaign::{Campaign, HoldOut, Split};
-use trainer::compare::compare;
+use trainer::compare::{Comparison, compare};
+use trainer::ladder::{BARE, Rung};
 use trainer::model::{Model, Provenance};
-use trainer::train::{EffectChoice, TrainSettings, check};
+use trainer::train::{EffectChoice, TrainSettings, Trained, check};
 
 /// A model and the campaign to retrain it on.
-pub struct Change {
-    pub model: Model,
-    campaign: Campaign,
+pub struct Change<'a> {
+    model: &'a Model,
+    campaign: &'a Campaign,
     split: Split,
 }
 
-impl Change {
-    /// Reads both, and holds out the runs that the model holds out.
-    pub fn read(model: &Path, subject: &Subject) -> Result<Self, Failure> {
-        let model = Model::read(model)?;
-        let campaign = subject.read()?;
+/// What was trained from the bare network up.
+pub struct Ladder {
+    pub rungs: Vec<Rung>,
+    pub model: Model,
+    pub comparison: Comparison,
+}
+
+impl<'a> Change<'a> {
+    /// Holds out the runs that the model holds out.
+    pub fn of(model: &'a Model, campaign: &'a Campaign) -> Result<Self, Failure> {
         let known = |name: &String| campaign.runs.iter().any(|run| run.name == *name);
         let names: Vec<String> = model.provenance.held_out_runs.iter().filter(|name| known(name)).cloned().collect();
         let choice = match names.as_slice() {
@@ -34,38 +39,75 @@ impl Change {
         Ok(Self { model, campaign, split })
     }
 
+    /// The model's effects and one more.
+    pub fn with(&self, new: EffectChoice) -> Result<Vec<EffectChoice>, Failure> {
+        let mut effects = EffectChoice::of(self.model);
+        if effects.iter().any(|choice| choice.is_same(&new)) {
+            return Err(Failure::new(format_args!("the model has the effect `{}` already", new.title())));
+        }
+        effects.push(new);
+        Ok(effects)
+    }
+
+    /// The model's effects but for one.
+    pub fn without(&self, unwanted: &EffectChoice) -> Result<Vec<EffectChoice>, Failure> {
+        let mut effects = EffectChoice::of(self.model);
+        let before = effects.len();
+        effects.retain(|choice| !choice.is_same(unwanted));
+        if effects.len() == before {
+            let names: Vec<&str> = effects.iter().map(EffectChoice::title).collect();
+            return Err(Failure::new(format_args!("the model has no effect `{}`", unwanted.title())).help(
+                format_args!("it has: {}", if names.is_empty() { "none".to_owned() } else { names.join(", ") }),
+            ));
+        }
+        Ok(effects)
+    }
+
+    /// Trains from the bare network up, one effect more on each rung, and tells of each as it is reached.
+    pub fn climb(
+        &self,
+        effects: &[EffectChoice],
+        train: impl Fn(&Split, &TrainSettings, &str) -> Result<Trained, Failure>,
+        mut reached: impl FnMut(&Rung),
+    ) -> Result<Ladder, Failure> {
+        // What is misspelt should not be found out after minutes of training.
+        check(self.campaign, &self.split, &self.settings(effects))?;
+        let mut rungs = Vec::new();
+        let mut top = None;
+        for count in 0..=effects.len() {
+            let effect = count.checked_sub(1).map_or(BARE, |last| effects[last].title()).to_owned();
+            let model = train(&self.split, &self.settings(&effects[..count]), &effect)?.model;
+            let comparison = compare(&model, self.campaign)?;
+            let rung = Rung { effect, residual_ug: comparison.residual_ug };
+            reached(&rung);
+            rungs.push(rung);
+            top = Some((model, comparison));
+        }
+        let (model, comparison) = top.ok_or_else(|| Failure::new("nothing was trained"))?;
+        Ok(Ladder { rungs, model, comparison })
+    }
+
     fn settings(&self, effects: &[EffectChoice]) -> TrainSettings {
         let (Provenance { seed, restarts, .. }, serial) = (&self.model.provenance, self.model.serial.clone());
         TrainSettings { restarts: *restarts, serial, effects: effects.to_vec(), ..TrainSettings::new(*seed) }
     }
 }
 
-/// Trains from the bare network up, one effect more on each rung, and writes the last model.
+/// Climbs with a progress bar, writes the model on the last rung, and prints the ladder.
 pub fn ladder(change: &Change, effects: &[EffectChoice], output: &Path, json: bool) -> Result<Answer, Failure> {
-    // What is misspelt should not be found out after minutes of training.
-    check(&change.campaign, &change.split, &change.settings(effects))?;
-    let mut rungs = Vec::new();
-    let mut top = None;
-    for count in 0..=effects.len() {
-        let name = count.checked_sub(1).map_or("network alone", |last| effects[last].title()).to_owned();
-        let trained = train_with_bar(&change.campaign, &change.split, &change.settings(&effects[..count]), &name)?;
-        let comparison = compare(&trained.model, &change.campaign)?;
-        rungs.push((name, comparison.residual_ug));
-        top = Some((trained, comparison));
-    }
-    let (trained, comparison) = top.ok_or_else(|| Failure::new("nothing was trained"))?;
-    trained.model.write(output)?;
+    let train =
+        |split: &Split, settings: &TrainSettings, name: &str| train_with_bar(change.campaign, split, settings, name);
+    let Ladder { rungs, model, comparison } = change.climb(effects, train, |_| ())?;
+    model.write(output)?;
     if json {
-        let rung =
-            |(name, residual_ug): &(String, f64)| serde_json::json!({ "effect": name, "residual_ug": residual_ug });
         let mut value = serde_json::json!(comparison);
-        value["ladder"] = rungs.iter().map(rung).collect::<Vec<_>>().into();
-        value["effects"] = serde_json::json!(trained.model.effects);
+        value["ladder"] = serde_json::json!(rungs);
+        value["effects"] = serde_json::json!(model.effects);
         anstream::println!("{value:#}");
     } else {
         let noise = comparison.noise_floor_ug.map(|noise_ug| ("noise from sample to sample", noise_ug));
         anstream::println!("{}", rungs_table(&rungs, noise));
-        for effect in &trained.model.effects {
+        for effect in &model.effects {
             let values: Vec<String> =
                 effect.parameters.iter().map(|(name, value)| format!("{name} = {value:.4e}")).collect();
             anstream::println!("  {}: {}", effect.title(), values.join(", "));
@@ -76,15 +118,15 @@ pub fn ladder(change: &Change, effects: &[EffectChoice], output: &Path, json: bo
 }
 
 /// The residual on held-out runs, effect by effect, as figures and as bars.
-pub fn rungs_table(rungs: &[(String, f64)], noise: Option<(&str, f64)>) -> Table {
-    let highest = rungs.iter().map(|(_, residual_ug)| *residual_ug).fold(0.0, f64::max);
+pub fn rungs_table(rungs: &[Rung], noise: Option<(&str, f64)>) -> Table {
+    let highest = rungs.iter().map(|rung| rung.residual_ug).fold(0.0, f64::max);
     let mut table = Table::new(["model", "held-out residual µg", ""]);
     let mut row = |name: &str, residual_ug: f64| {
         let bar = "█".repeat((residual_ug / highest * 40.0).round() as usize);
         table.row([name.to_owned(), format!("{residual_ug:.2}"), format!("{bar:<40}")]);
     };
-    for (index, (name, residual_ug)) in rungs.iter().enumerate() {
-        row(&if index == 0 { name.clone() } else { format!("+ {name}") }, *residual_ug);
+    for (index, Rung { effect, residual_ug }) in rungs.iter().enumerate() {
+        row(&if index == 0 { effect.clone() } else { format!("+ {effect}") }, *residual_ug);
     }
     if let Some((name, noise_ug)) = noise {
         row(name, noise_ug);

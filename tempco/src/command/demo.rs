@@ -3,7 +3,7 @@
 use super::change::rungs_table;
 use super::diagnose::diagnosed;
 use super::simulate::{self, blind::Blind};
-use super::train::train_with_bar;
+use super::train::{Simpler, train_with_bar};
 use super::{export, reveal, verify};
 use crate::failure::{Answer, Failure};
 use crate::render::diagnosis;
@@ -13,11 +13,11 @@ use firmware_sim::scenario::Scenario;
 use firmware_sim::seal::SealedTruth;
 use firmware_sim::twin::NoiseFloor;
 use std::path::{Path, PathBuf};
-use trainer::campaign::{Campaign, HoldOut, ReadOptions, Run, Split};
+use trainer::campaign::{Campaign, HoldOut, ReadOptions, Split};
 use trainer::compare::compare;
 use trainer::diagnose::Diagnosis;
+use trainer::ladder::Rung;
 use trainer::model::Model;
-use trainer::noise::rms;
 use trainer::residuals::arranged;
 use trainer::train::{EffectChoice, TrainSettings, Trained};
 
@@ -35,25 +35,26 @@ pub struct Demo {
 }
 
 /// Hides an effect of three times the noise: plain to a diagnosis, invisible to a reader of the table.
-const SEED: u64 = 18;
+pub const SEED: u64 = 18;
 
 /// The scenario that excites every effect.
-const SCENARIO: &str = "rich";
+pub const SCENARIO: &str = "rich";
 
 /// What was measured, and what is known of it.
-struct Measured {
-    data: PathBuf,
-    envelope: PathBuf,
-    campaign: Campaign,
+pub struct Measured {
+    pub data: PathBuf,
+    pub envelope: PathBuf,
+    pub campaign: Campaign,
     split: Split,
     /// What noise alone would leave on the held-out runs, as the simulation states it, µg.
-    noise_ug: f64,
+    pub noise_ug: f64,
 }
 
 impl Demo {
     pub fn run(&self) -> Result<Answer, Failure> {
         std::fs::create_dir_all(&self.output).map_err(|error| Failure::io(&self.output, &error))?;
-        let measured = self.measure()?;
+        let measured = measure(&self.output, self.seed)?;
+        announce(&measured);
         let trained = self.train(&measured)?;
         let diagnosis = diagnosed(&trained.model, &measured.campaign)?;
         anstream::println!("3. Diagnosis\n{}", diagnosis::short(&diagnosis));
@@ -63,22 +64,6 @@ impl Demo {
         anstream::println!("7. The truth\n{}\n{}\n", reveal::words(&truth, &measured.data), judged(&truth, &diagnosis));
         self.further(&measured.data);
         Ok(answer)
-    }
-
-    fn measure(&self) -> Result<Measured, Failure> {
-        let scenario =
-            Scenario::preset(SCENARIO).ok_or_else(|| Failure::new(format_args!("no scenario named {SCENARIO}")))?;
-        let data = self.output.join("campaign.csv");
-        let sealed = Blind::ONE.measure(&scenario, self.seed, &data)?;
-        let campaign = Campaign::read(std::slice::from_ref(&data), &ReadOptions::default())?;
-        let split = campaign.split(&HoldOut::LastOfEachKind)?;
-        let names: Vec<&str> = split.held_out.iter().map(|&index| campaign.runs[index].name.as_str()).collect();
-        let noise_ug = noise_ug(&scenario, self.seed, &names)?;
-        anstream::println!("1. Measurements: {} rows in {} runs. They hide an effect;", sealed.rows, sealed.runs);
-        anstream::println!("   what it is, is sealed in {} until the end.", sealed.envelope.display());
-        anstream::println!("   held out, never seen by any training: {}", names.join(", "));
-        anstream::println!("   noise alone would leave {noise_ug:.2} µg there, says the simulation\n");
-        Ok(Measured { data, envelope: sealed.envelope, campaign, split, noise_ug })
     }
 
     fn settings(&self, effects: Vec<EffectChoice>) -> TrainSettings {
@@ -91,11 +76,9 @@ impl Demo {
         let trained = train_with_bar(campaign, split, &self.settings(Vec::new()), "training")?;
         trained.model.write(&self.output.join("model.toml"))?;
         let mut table = Table::new(["model", "held-out residual µg", "times the noise"]);
-        for (name, residual_ug) in [
-            ("a line through the raw frequency", held_out_ug(measured, |run| trained.raw_g(run))),
-            ("polynomial Δf²·T³", held_out_ug(measured, |run| trained.baseline.residuals_g(run))),
-            ("network", compare(&trained.model, campaign)?.residual_ug),
-        ] {
+        let simpler = Simpler::all(&trained, campaign, split).into_iter().map(|one| (one.model, one.residual_ug));
+        let network = ("network", compare(&trained.model, campaign)?.residual_ug);
+        for (name, residual_ug) in simpler.chain([network]) {
             table.row([name.to_owned(), format!("{residual_ug:.2}"), format!("{:.2}", residual_ug / noise_ug)]);
         }
         anstream::println!("2. Models without the effect\n{table}");
@@ -112,7 +95,9 @@ impl Demo {
         let better = train_with_bar(campaign, split, &self.settings(vec![EffectChoice::named(effect)]), effect)?.model;
         better.write(&self.output.join("better.toml"))?;
         let rungs = [("network alone", &trained.model), (effect, &better)];
-        let rung = |(name, model): (&str, &Model)| Ok((name.to_owned(), compare(model, campaign)?.residual_ug));
+        let rung = |(name, model): (&str, &Model)| {
+            Ok(Rung { effect: name.to_owned(), residual_ug: compare(model, campaign)?.residual_ug })
+        };
         let rungs = rungs.into_iter().map(rung).collect::<Result<Vec<_>, Failure>>()?;
         let noise = ("noise alone, says the simulation", *noise_ug);
         anstream::println!("4. The model with the effect\n{}", rungs_table(&rungs, Some(noise)));
@@ -137,6 +122,30 @@ impl Demo {
     }
 }
 
+/// Measures the blind campaign into a folder, and seals the truth beside it.
+pub fn measure(folder: &Path, seed: u64) -> Result<Measured, Failure> {
+    let scenario =
+        Scenario::preset(SCENARIO).ok_or_else(|| Failure::new(format_args!("no scenario named {SCENARIO}")))?;
+    let data = folder.join("campaign.csv");
+    let envelope = Blind::ONE.measure(&scenario, seed, &data)?.envelope;
+    let campaign = Campaign::read(std::slice::from_ref(&data), &ReadOptions::default())?;
+    let split = campaign.split(&HoldOut::LastOfEachKind)?;
+    let noise_ug = noise_ug(&scenario, seed, &held_out(&campaign, &split))?;
+    Ok(Measured { data, envelope, campaign, split, noise_ug })
+}
+
+fn held_out<'a>(campaign: &'a Campaign, split: &Split) -> Vec<&'a str> {
+    split.held_out.iter().map(|&index| campaign.runs[index].name.as_str()).collect()
+}
+
+fn announce(Measured { campaign, split, envelope, noise_ug, .. }: &Measured) {
+    let (rows, runs) = (campaign.row_count(), campaign.runs.len());
+    anstream::println!("1. Measurements: {rows} rows in {runs} runs. They hide an effect;");
+    anstream::println!("   what it is, is sealed in {} until the end.", envelope.display());
+    anstream::println!("   held out, never seen by any training: {}", held_out(campaign, split).join(", "));
+    anstream::println!("   noise alone would leave {noise_ug:.2} µg there, says the simulation\n");
+}
+
 /// The same campaign without what is hidden: its noise may be known.
 fn noise_ug(scenario: &Scenario, seed: u64, names: &[&str]) -> Result<f64, Failure> {
     let recording = simulate::simulate(scenario, seed)?;
@@ -144,14 +153,8 @@ fn noise_ug(scenario: &Scenario, seed: u64, names: &[&str]) -> Result<f64, Failu
     Ok(NoiseFloor::mean(held_out.flat_map(|run| &run.rows).map(|row| row.truth.floor)).noise_ug())
 }
 
-fn held_out_ug(measured: &Measured, residuals_g: impl Fn(&Run) -> Vec<f64>) -> f64 {
-    let Measured { campaign, split, .. } = measured;
-    let residuals: Vec<f64> = split.held_out.iter().flat_map(|&index| residuals_g(&campaign.runs[index])).collect();
-    rms(&residuals) * 1e6
-}
-
 /// Whether the diagnosis was right, in a sentence or two.
-fn judged(truth: &SealedTruth, diagnosis: &Diagnosis) -> String {
+pub fn judged(truth: &SealedTruth, diagnosis: &Diagnosis) -> String {
     let Some(hidden) = truth.hidden.first().map(|hidden| &hidden.name) else {
         return "There was nothing to find.".to_owned();
     };

@@ -8,7 +8,8 @@ use clap::Args;
 use firmware_core::Compensator;
 use firmware_core::effect::ALL;
 use protocol::{Blob, Signed};
-use trainer::campaign::Campaign;
+use serde::Serialize;
+use trainer::campaign::{Campaign, Run};
 use trainer::expression::print;
 use trainer::model::Model;
 
@@ -78,20 +79,48 @@ fn blob(bytes: &[u8]) -> Result<Answer, Failure> {
     })
 }
 
-fn campaign(campaign: &Campaign) {
-    let mut table = Table::new(["run", "kind", "samples", "every s", "hours", "from °C", "to °C", "levels"]);
-    for run in &campaign.runs {
+/// What one run is.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunSummary {
+    pub run: String,
+    kind: String,
+    samples: usize,
+    interval_s: Option<f64>,
+    hours: f64,
+    from_c: f64,
+    to_c: f64,
+    levels: usize,
+}
+
+impl RunSummary {
+    pub fn of(campaign: &Campaign, run: &Run) -> Self {
         let temperatures = || run.rows.iter().map(|row| f64::from(row.sample.temperature_uc) * 1e-6);
         let alone = Campaign::new(vec![run.clone()], campaign.channels.clone(), campaign.quantity.clone());
+        Self {
+            run: run.name.clone(),
+            kind: run.kind.clone(),
+            samples: run.rows.len(),
+            interval_s: run.sample_interval_s(),
+            hours: run.duration_s() / 3600.0,
+            from_c: temperatures().fold(f64::MAX, f64::min),
+            to_c: temperatures().fold(f64::MIN, f64::max),
+            levels: alone.levels(0.01).len(),
+        }
+    }
+}
+
+fn campaign(campaign: &Campaign) {
+    let mut table = Table::new(["run", "kind", "samples", "every s", "hours", "from °C", "to °C", "levels"]);
+    for run in campaign.runs.iter().map(|run| RunSummary::of(campaign, run)) {
         table.row([
-            run.name.clone(),
-            run.kind.clone(),
-            run.rows.len().to_string(),
-            run.sample_interval_s().map_or_else(|| "–".to_owned(), |interval| format!("{interval:.2}")),
-            format!("{:.2}", run.duration_s() / 3600.0),
-            format!("{:.1}", temperatures().fold(f64::MAX, f64::min)),
-            format!("{:.1}", temperatures().fold(f64::MIN, f64::max)),
-            alone.levels(0.01).len().to_string(),
+            run.run,
+            run.kind,
+            run.samples.to_string(),
+            run.interval_s.map_or_else(|| "–".to_owned(), |interval| format!("{interval:.2}")),
+            format!("{:.2}", run.hours),
+            format!("{:.1}", run.from_c),
+            format!("{:.1}", run.to_c),
+            run.levels.to_string(),
         ]);
     }
     anstream::print!("{table}");

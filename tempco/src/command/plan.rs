@@ -13,7 +13,7 @@ use trainer::campaign::Campaign;
 use trainer::diagnose::Diagnosis;
 use trainer::diagnose::plan::{Plan as Planned, PlanError, Recording, plan};
 use trainer::model::Model;
-use trainer::progress::Quiet;
+use trainer::progress::{Progress, Quiet};
 
 /// Proposes the next recording: the one that tells best apart what the diagnosis leaves open.
 #[derive(Args)]
@@ -48,13 +48,12 @@ impl Plan {
     pub fn run(&self) -> Result<Answer, Failure> {
         let (model, campaign) = (Model::read(&self.model)?, self.data.read()?);
         let diagnosis = diagnosed(&model, &campaign)?;
-        let proposed = self.recordings(&campaign, &diagnosis)?;
-        let recordings: Vec<Recording> = proposed.iter().map(|one| one.recording.clone()).collect();
+        let wish = Wish { effects: self.effects.clone(), hours: self.hours };
         let spinner = spinner("planning");
-        let planned = plan(&model, &campaign, &diagnosis, &self.effects, &recordings, &Quiet);
+        let planned = planned(&model, &campaign, &diagnosis, &wish, &Quiet);
         spinner.finish_and_clear();
-        let planned = planned.map_err(explained)?;
-        let best = best(&planned, &proposed);
+        let (planned, best) = planned?;
+        let best = best.as_ref();
         let file = best.zip(self.output.as_ref()).map(|(best, folder)| write(best, folder)).transpose()?;
         if self.json {
             anstream::println!("{:#}", json(&planned, file.as_deref()));
@@ -67,20 +66,6 @@ impl Plan {
             );
         }
         Ok(if best.is_some() { Answer::Yes } else { Answer::No })
-    }
-
-    /// The recordings that there is time for.
-    fn recordings(&self, campaign: &Campaign, diagnosis: &Diagnosis) -> Result<Vec<Proposed>, Failure> {
-        let unseen = diagnosis.unobservable.iter().map(|one| &one.effect);
-        let columns: Vec<&str> = self.effects.iter().chain(unseen).filter_map(|name| column(name)).collect();
-        let mut all = recordings::all(campaign, &columns)?;
-        let shortest_h = all.iter().map(|one| one.recording.hours).fold(f64::INFINITY, f64::min);
-        all.retain(|one| self.hours.is_none_or(|hours| one.recording.hours <= hours));
-        if all.is_empty() {
-            return Err(Failure::new("no recording is as short as that")
-                .help(format_args!("the shortest takes {shortest_h:.1} hours: --hours {:.0}", shortest_h.ceil())));
-        }
-        Ok(all)
     }
 
     /// What a person does next.
@@ -107,10 +92,52 @@ impl Plan {
     }
 }
 
-/// The best recording, if it is any good.
-fn best<'a>(plan: &Planned, proposed: &'a [Proposed]) -> Option<&'a Proposed> {
-    let best = plan.proposals.first().filter(|best| best.is_useful())?;
-    proposed.iter().find(|one| one.recording.name == best.recording)
+/// What is asked of a plan.
+#[derive(Clone, Debug, Default)]
+pub struct Wish {
+    /// Effects to tell apart, instead of those that the diagnosis leaves open.
+    pub effects: Vec<String>,
+    /// Only recordings that take at most so long, hours.
+    pub hours: Option<f64>,
+}
+
+impl Wish {
+    /// The options that it is on a command line.
+    pub fn words(&self) -> String {
+        let effects = (!self.effects.is_empty()).then(|| format!(" --effects {}", self.effects.join(",")));
+        let hours = self.hours.map(|hours| format!(" --hours {hours}"));
+        effects.into_iter().chain(hours).collect()
+    }
+}
+
+/// The plan, and the best recording if it is any good.
+pub fn planned(
+    model: &Model,
+    campaign: &Campaign,
+    diagnosis: &Diagnosis,
+    wish: &Wish,
+    progress: &dyn Progress,
+) -> Result<(Planned, Option<Proposed>), Failure> {
+    let proposed = recordings(wish, campaign, diagnosis)?;
+    let recordings: Vec<Recording> = proposed.iter().map(|one| one.recording.clone()).collect();
+    let planned = plan(model, campaign, diagnosis, &wish.effects, &recordings, progress).map_err(explained)?;
+    let best = planned.proposals.first().filter(|best| best.is_useful());
+    let best = best.and_then(|best| proposed.into_iter().find(|one| one.recording.name == best.recording));
+    Ok((planned, best))
+}
+
+/// The recordings that there is time for.
+fn recordings(wish: &Wish, campaign: &Campaign, diagnosis: &Diagnosis) -> Result<Vec<Proposed>, Failure> {
+    let unseen = diagnosis.unobservable.iter().map(|one| &one.effect);
+    let columns: Vec<&str> = wish.effects.iter().chain(unseen).filter_map(|name| column(name)).collect();
+    let mut all = recordings::all(campaign, &columns)?;
+    let shortest_h = all.iter().map(|one| one.recording.hours).fold(f64::INFINITY, f64::min);
+    all.retain(|one| wish.hours.is_none_or(|hours| one.recording.hours <= hours));
+    if all.is_empty() {
+        return Err(Failure::new("no recording is as short as that")
+            .help(format_args!("the shortest takes {shortest_h:.1} hours: --hours {:.0}", shortest_h.ceil())));
+    }
+    Ok(all)
 }
 
 /// Columns that the recording has and the campaign hasn't: both can be read together only when both have them.
@@ -133,7 +160,8 @@ fn column(effect: &str) -> Option<&'static str> {
     about.channel.or_else(|| about.needs.contains("age_days").then_some("age_days"))
 }
 
-fn write(best: &Proposed, folder: &Path) -> Result<PathBuf, Failure> {
+/// Writes the recording as a scenario file into a folder.
+pub fn write(best: &Proposed, folder: &Path) -> Result<PathBuf, Failure> {
     let file = folder.join(format!("{}.toml", best.scenario.name));
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, &error))?;
     let text = format!(

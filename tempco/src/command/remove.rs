@@ -5,7 +5,7 @@ use crate::failure::{Answer, Failure};
 use crate::subject::Subject;
 use clap::Args;
 use std::path::PathBuf;
-use trainer::train::EffectChoice;
+use trainer::model::Model;
 
 /// Takes a physical effect out of a model and retrains the rest.
 #[derive(Args)]
@@ -28,17 +28,9 @@ pub struct Remove {
 
 impl Remove {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let change = Change::read(&self.model, &self.subject)?;
-        let mut effects = EffectChoice::of(&change.model);
-        let before = effects.len();
-        let unwanted = self.subject.effect();
-        effects.retain(|choice| !choice.is_same(&unwanted));
-        if effects.len() == before {
-            let names: Vec<&str> = effects.iter().map(EffectChoice::title).collect();
-            return Err(Failure::new(format_args!("the model has no effect `{}`", unwanted.title())).help(
-                format_args!("it has: {}", if names.is_empty() { "none".to_owned() } else { names.join(", ") }),
-            ));
-        }
+        let (model, campaign) = (Model::read(&self.model)?, self.subject.read()?);
+        let change = Change::of(&model, &campaign)?;
+        let effects = change.without(&self.subject.effect())?;
         ladder(&change, &effects, &self.output, self.json)
     }
 }

@@ -118,7 +118,8 @@ fn short(value: &toml::Value) -> String {
     }
 }
 
-fn json(truth: &SealedTruth) -> serde_json::Value {
+/// The same for programs.
+pub fn json(truth: &SealedTruth) -> serde_json::Value {
     let hidden: Vec<_> = truth
         .hidden
         .iter()

@@ -1,14 +1,16 @@
 //! `tempco train DATA -o model.toml`
 
-use crate::data::{Data, HeldOut};
+use crate::data::{Data, HeldOut, quoted};
 use crate::failure::{Answer, Failure};
 use crate::progress::Restarts;
 use crate::render;
 use crate::table::Table;
 use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use trainer::campaign::{Campaign, Demand, Split};
+use trainer::campaign::{Campaign, Demand, HoldOut, Run, Split};
 use trainer::compare::{Comparison, compare};
+use trainer::noise::rms;
 use trainer::train::{Backprop, Method, TrainSettings, Trained, train};
 
 /// Trains a compensation model from a campaign and compares it with the runs that were held out.
@@ -34,18 +36,19 @@ pub struct Train {
 }
 
 /// How to train.
-#[derive(Args)]
+#[derive(Args, Clone, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Training {
     /// Training method
     #[arg(long, value_enum, default_value_t = MethodName::SecondOrder)]
     method: MethodName,
 
     /// Trainings from different starts; the best is kept
-    #[arg(long, default_value_t = 30)]
+    #[arg(long, default_value_t = RESTARTS)]
     restarts: usize,
 
     /// Seed of every random number
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = TRAINING_SEED)]
     seed: u64,
 
     /// Scale factor in signal units per reference unit, for a campaign whose reference never varies
@@ -58,7 +61,8 @@ pub struct Training {
 }
 
 /// Training methods by name.
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, Deserialize, PartialEq, Eq, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
 pub enum MethodName {
     /// Variable projection and Levenberg–Marquardt, slope held to the measured scale factor
     SecondOrder,
@@ -78,7 +82,40 @@ impl MethodName {
     }
 }
 
+/// As many as the paper makes.
+const RESTARTS: usize = 30;
+const TRAINING_SEED: u64 = 1;
+
+impl Default for Training {
+    fn default() -> Self {
+        let (method, serial) = (MethodName::SecondOrder, String::new());
+        Self { method, restarts: RESTARTS, seed: TRAINING_SEED, scale_factor: None, serial }
+    }
+}
+
 impl Training {
+    /// The options that differ from the usual, as they are typed.
+    pub fn words(&self) -> impl Iterator<Item = String> {
+        let usual = Self::default();
+        [
+            (self.method != usual.method).then(|| format!("--method {}", self.method.method().name())),
+            (self.restarts != usual.restarts).then(|| format!("--restarts {}", self.restarts)),
+            (self.seed != usual.seed).then(|| format!("--seed {}", self.seed)),
+            self.scale_factor.map(|hz_per_g| format!("--scale-factor {hz_per_g}")),
+            (!self.serial.is_empty()).then(|| format!("--serial {}", quoted(&self.serial))),
+        ]
+        .into_iter()
+        .flatten()
+    }
+
+    /// What a model of it is called.
+    pub fn title(&self) -> String {
+        match self.method {
+            MethodName::SecondOrder => "network alone".to_owned(),
+            other => format!("network, {}", other.method().name()),
+        }
+    }
+
     pub fn settings(&self) -> TrainSettings {
         TrainSettings {
             method: self.method.method(),
@@ -95,14 +132,9 @@ const ROWS_MIN: usize = 100;
 
 impl Train {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let campaign = self.data.read()?;
-        campaign.check_trainable(&Demand {
-            rows_min: ROWS_MIN,
-            scale_factor_stated: self.training.scale_factor.is_some(),
-            one_run_will_do: matches!(self.held_out.choice(), trainer::campaign::HoldOut::None),
-        })?;
-        let split = campaign.split(&self.held_out.choice())?;
-        let trained = train_with_bar(&campaign, &split, &self.training.settings(), "training")?;
+        let (campaign, settings) = (self.data.read()?, self.training.settings());
+        let split = split(&campaign, &self.held_out.choice(), &settings)?;
+        let trained = train_with_bar(&campaign, &split, &settings, "training")?;
         trained.model.write(&self.output)?;
         let comparison = compare(&trained.model, &campaign)?;
         if self.json {
@@ -115,6 +147,16 @@ impl Train {
     }
 }
 
+/// The split, of a campaign that can be trained on at all.
+pub fn split(campaign: &Campaign, hold_out: &HoldOut, settings: &TrainSettings) -> Result<Split, Failure> {
+    campaign.check_trainable(&Demand {
+        rows_min: ROWS_MIN,
+        scale_factor_stated: settings.scale_factor_hz_per_g.is_some(),
+        one_run_will_do: matches!(hold_out, HoldOut::None),
+    })?;
+    Ok(campaign.split(hold_out)?)
+}
+
 /// Trains with a progress bar.
 pub fn train_with_bar(
     campaign: &Campaign,
@@ -124,6 +166,26 @@ pub fn train_with_bar(
 ) -> Result<Trained, Failure> {
     let progress = Restarts::new(settings.restarts, what);
     Ok(train(campaign, split, settings, &progress)?)
+}
+
+/// What a simpler model leaves on the held-out runs, or on the training runs where none is held out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Simpler {
+    pub model: &'static str,
+    pub residual_ug: f64,
+}
+
+impl Simpler {
+    pub fn all(trained: &Trained, campaign: &Campaign, split: &Split) -> Vec<Self> {
+        let judges = if split.held_out.is_empty() { &split.training } else { &split.held_out };
+        let runs: Vec<&Run> = judges.iter().filter_map(|&index| campaign.runs.get(index)).collect();
+        let raw: Vec<f64> = runs.iter().flat_map(|run| trained.raw_g(run)).collect();
+        let polynomial: Vec<f64> = runs.iter().flat_map(|run| trained.baseline.residuals_g(run)).collect();
+        vec![
+            Self { model: "a line through the raw frequency", residual_ug: rms(&raw) * 1e6 },
+            Self { model: "polynomial Δf²·T³", residual_ug: rms(&polynomial) * 1e6 },
+        ]
+    }
 }
 
 fn text(campaign: &Campaign, split: &Split, trained: &Trained, comparison: &Comparison) -> String {

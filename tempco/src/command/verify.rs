@@ -6,8 +6,10 @@ use crate::link::{AnyLink, PORTS, Port};
 use crate::progress::bar;
 use clap::Args;
 use protocol::{Blob, Signed};
+use serde::Serialize;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
-use trainer::campaign::Campaign;
+use trainer::campaign::{Campaign, Run};
 use trainer::model::Model;
 use trainer::replay::replay;
 use trainer::residuals::arranged;
@@ -50,7 +52,7 @@ impl Verify {
         } else if !holds(&mut link, &model.to_bytes()?)? {
             return self.other();
         }
-        let parity = compare(&blob, &campaign, &mut link)?;
+        let parity = shown(&blob, &campaign, &mut link)?;
         if self.json {
             let Parity { samples, identical, .. } = parity;
             anstream::println!("{:#}", serde_json::json!({ "samples": samples, "identical": identical }));
@@ -83,6 +85,7 @@ fn holds(link: &mut AnyLink, blob: &[u8]) -> Result<bool, Failure> {
 }
 
 /// How many readings had the same bits.
+#[derive(Clone, Debug, Serialize)]
 pub struct Parity {
     pub samples: usize,
     pub identical: usize,
@@ -99,34 +102,70 @@ impl std::fmt::Display for Parity {
     }
 }
 
-/// Writes the blob into a virtual instrument and replays every run there and here.
+/// Writes the blob into a virtual instrument and replays every run there and here, with a progress bar.
 pub fn verify(blob: &Blob, campaign: &Campaign) -> Result<Parity, Failure> {
+    let mut link = uploaded(blob)?;
+    shown(blob, campaign, &mut link)
+}
+
+/// The same without a bar. After each run `observe` sees how many samples are done, and may end it.
+pub fn verified(
+    blob: &Blob,
+    campaign: &Campaign,
+    observe: impl FnMut(usize) -> ControlFlow<()>,
+) -> Result<Parity, Failure> {
+    let mut link = uploaded(blob)?;
+    compare(blob, campaign, &mut link, observe)
+}
+
+fn uploaded(blob: &Blob) -> Result<AnyLink, Failure> {
     let mut link = Port::Sim.open(&blob.serial)?;
     link.upload_blob(blob)?;
-    compare(blob, campaign, &mut link)
+    Ok(link)
+}
+
+/// Compares with a progress bar.
+fn shown(blob: &Blob, campaign: &Campaign, link: &mut AnyLink) -> Result<Parity, Failure> {
+    let bar = bar(campaign.row_count() as u64, "verifying");
+    let parity = compare(blob, campaign, link, |samples| {
+        bar.set_position(samples as u64);
+        ControlFlow::Continue(())
+    });
+    bar.finish_and_clear();
+    parity
 }
 
 /// Replays every run there and here.
-fn compare(blob: &Blob, campaign: &Campaign, link: &mut AnyLink) -> Result<Parity, Failure> {
+fn compare(
+    blob: &Blob,
+    campaign: &Campaign,
+    link: &mut AnyLink,
+    mut observe: impl FnMut(usize) -> ControlFlow<()>,
+) -> Result<Parity, Failure> {
     let mut parity = Parity { samples: 0, identical: 0, first_difference: None };
-    let bar = bar(campaign.row_count() as u64, "verifying");
     for run in &campaign.runs {
-        let here = replay(blob, run)?;
-        // A run begins as after power-on: the host's replay starts with empty memories too.
-        link.restart()?;
-        for (index, (row, here)) in run.rows.iter().zip(&here).enumerate() {
-            let there = link.replay(&row.sample)?;
-            parity.samples += 1;
-            if there.same_bits(here) {
-                parity.identical += 1;
-            } else if parity.first_difference.is_none() {
-                parity.first_difference = Some(format!("run {}, row {}: {there:?} and {here:?}", run.name, index + 1));
-            }
-            bar.inc(1);
+        compare_run(blob, run, link, &mut parity)?;
+        if observe(parity.samples).is_break() {
+            break;
         }
     }
     // What comes next is the instrument's own life again.
     link.restart()?;
-    bar.finish_and_clear();
     Ok(parity)
+}
+
+fn compare_run(blob: &Blob, run: &Run, link: &mut AnyLink, parity: &mut Parity) -> Result<(), Failure> {
+    let here = replay(blob, run)?;
+    // A run begins as after power-on: the host's replay starts with empty memories too.
+    link.restart()?;
+    for (index, (row, here)) in run.rows.iter().zip(&here).enumerate() {
+        let there = link.replay(&row.sample)?;
+        parity.samples += 1;
+        if there.same_bits(here) {
+            parity.identical += 1;
+        } else if parity.first_difference.is_none() {
+            parity.first_difference = Some(format!("run {}, row {}: {there:?} and {here:?}", run.name, index + 1));
+        }
+    }
+    Ok(())
 }

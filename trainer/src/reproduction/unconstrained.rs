@@ -71,6 +71,7 @@ impl<'a> Network<'a> {
             index,
             iteration,
             residual_g: (2.0 * cost).sqrt() * unit_g,
+            noise_g: None,
             done,
         };
         let minimum = minimise(&mut self, &start, &LIMITS, |iteration, cost| {

@@ -80,9 +80,10 @@ fn restart(task: &Task, problem: &Problem, settings: &Backprop, index: usize) ->
         Swarm::Improved(swarm) => firefly::improved(cost, &domain, swarm, &mut random, |_, _| go_on())?,
     };
     let descend = |weights: &[f64], gradient: &mut [f64]| problem.cost_and_gradient(weights, gradient);
+    let noise_g = Some(task.sigma_g * (problem.data.len() as f64 / problem.samples).sqrt());
     let report = |iteration: usize, cost: f64, done: bool| {
         let residual_g = (2.0 * cost).sqrt() * problem.unit_g;
-        task.progress.restart(RestartNews { index, iteration, residual_g, done });
+        task.progress.restart(RestartNews { index, iteration, residual_g, noise_g, done });
     };
     let minimum = gradient_descent::minimise(descend, &first.best, &settings.descent, |iteration, cost| {
         if iteration % 100 == 0 {

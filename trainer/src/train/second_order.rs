@@ -143,11 +143,13 @@ fn descend(task: &Task, problem: &Problem, rows: impl Rows, index: usize, start:
     if task.progress.cancelled() {
         return None;
     }
-    let weight: f64 = rows.groups().iter().flat_map(|group| &group.rows).map(|row| row.weight).sum();
+    let weigh = |of: fn(&ValueRow) -> f64| rows.groups().iter().flat_map(|group| &group.rows).map(of).sum::<f64>();
+    let weight = weigh(|row| row.weight);
+    let noise_g = Some(task.sigma_g * (weigh(|row| row.weight / row.samples) / weight).sqrt());
     let mut network = NetworkProblem::new(rows, &problem.anchors, problem.prior);
     let report = |iteration, cost: f64, done| {
         let residual_g = (2.0 * cost / weight).sqrt() * problem.unit_g;
-        task.progress.restart(RestartNews { index, iteration, residual_g, done });
+        task.progress.restart(RestartNews { index, iteration, residual_g, noise_g, done });
     };
     let minimum = minimise(&mut network, start, &LIMITS, |iteration, cost| {
         report(iteration, cost, false);

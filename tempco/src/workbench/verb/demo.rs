@@ -1,0 +1,32 @@
+//! `tempco simulate rich --blind`: a campaign that hides an effect, as `tempco demo` makes it.
+
+use super::load::{measured, take};
+use crate::command::demo::{self, SCENARIO, SEED};
+use crate::data::{Data, Reading};
+use crate::workbench::bench::{Bench, Refusal, Task};
+use crate::workbench::commands;
+use crate::workbench::job::Step;
+use crate::workbench::session::Blind;
+use serde::Deserialize;
+use std::sync::Arc;
+
+/// Which of them.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Request {
+    #[serde(default)]
+    pub seed: Option<u64>,
+}
+
+pub fn run(bench: &Arc<Bench>, Request { seed }: Request) -> Result<(), Refusal> {
+    let (folder, seed) = (bench.session().folder.clone(), seed.unwrap_or(SEED));
+    let command = commands::simulate(SCENARIO, seed, &folder.join("campaign.csv"));
+    let made_by = command.clone();
+    let work = Box::new(move |_: &_| {
+        let made = demo::measure(&folder, seed)?;
+        let data = Data { files: vec![made.data], reading: Reading::default() };
+        let blind = Blind { envelope: made.envelope, command: made_by, noise_ug: made.noise_ug, revealed: None };
+        Ok(take(measured(data, made.campaign, Some(blind))))
+    });
+    bench.start(Task { step: Step::Load, what: "Simulating a campaign that hides an effect".to_owned(), command, work })
+}

@@ -1,0 +1,38 @@
+//! `tempco train DATA`
+
+use super::measured;
+use crate::command::train::{Simpler, Training, split};
+use crate::failure::Failure;
+use crate::workbench::bench::{Bench, Finish, Refusal, Task};
+use crate::workbench::commands;
+use crate::workbench::job::{Job, Step};
+use crate::workbench::session::{Entry, Measured, Origin};
+use std::sync::Arc;
+use trainer::train::{TrainSettings, train};
+
+pub fn run(bench: &Arc<Bench>, training: Training) -> Result<(), Refusal> {
+    let (measured, file) = {
+        let session = bench.session();
+        (measured(&session)?.clone(), session.new_file())
+    };
+    let command = commands::train(&measured, &training, &file);
+    let origin = Origin { file, parent: None, title: training.title(), command: command.clone() };
+    let work = Box::new(move |job: &Job| trained(job, &measured, &training.settings(), origin));
+    bench.start(Task { step: Step::Train, what: "Training".to_owned(), command, work })
+}
+
+fn trained(job: &Job, measured: &Measured, settings: &TrainSettings, origin: Origin) -> Result<Finish, Failure> {
+    let Measured { campaign, held_out, .. } = measured;
+    let split = split(campaign, &held_out.choice(), settings)?;
+    let trained = train(campaign, &split, settings, job)?;
+    let entry = Entry::new(origin, trained.model.clone(), campaign)?;
+    keep(job, Entry { simpler: Simpler::all(&trained, campaign, &split), ..entry })
+}
+
+/// Writes the model, unless it was trained in vain, and puts it on the bench.
+pub fn keep(job: &Job, entry: Entry) -> Result<Finish, Failure> {
+    if !job.is_stopped() {
+        entry.model.write(&entry.file)?;
+    }
+    Ok(Box::new(move |session| session.add(entry)))
+}

@@ -1,0 +1,17 @@
+//! The workbench: what it answers, whom it answers, and the whole loop by clicks and by keys.
+
+#[path = "../../tests/browser/chromium.rs"]
+#[allow(dead_code, reason = "other pages need more of a browser")]
+mod chromium;
+#[path = "workbench/clicks.rs"]
+mod clicks;
+#[path = "workbench/keys.rs"]
+mod keys;
+#[path = "workbench/page.rs"]
+mod page;
+#[path = "workbench/requests.rs"]
+mod requests;
+#[path = "workbench/served.rs"]
+mod served;
+#[path = "workbench/strangers.rs"]
+mod strangers;
