@@ -10,6 +10,7 @@ use super::instrument::Known;
 use super::layout::Cell;
 use super::telltale::Telltale;
 use super::whitening::Columns;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -87,7 +88,7 @@ impl Case<'_> {
         }
         let white = noise.whiten(&fine, &values).columns;
         let course = |(cells, values): (&Vec<Cell>, &[f64])| Course::new(cells, values);
-        let pairs = fine.stretches.iter().map(|stretch| &stretch.cells).zip(white.iter().map(|run| run.as_slice()));
+        let pairs = fine.stretches.iter().map(|stretch| &stretch.cells).zip(white.iter().map(DMatrix::as_slice));
         Some(pairs.filter_map(course).collect())
     }
 }
