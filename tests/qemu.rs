@@ -87,7 +87,7 @@ fn without_sensors_it_measures_flags_and_never_hangs() {
 }
 
 /// Of the 128 KiB that there are; `docs/cost.md` has what is used.
-const STACK_BUDGET: usize = 24 * 1024;
+const STACK_BUDGET: usize = 32 * 1024;
 
 #[test]
 fn the_stack_stays_within_its_budget() {
