@@ -56,7 +56,7 @@ impl Microcontroller {
         Self::start_with(&image("firmware-logging"), &semihosting, identity, calibration, patience)
     }
 
-    /// Starts the image that ships in a memory full of [`PAINT`]; [`Stack::depth`] sees how far down it was used.
+    /// Starts the image that ships in a memory full of a pattern; [`Stack::depth`] sees how far down it was used.
     ///
     /// # Panics
     /// As [`Microcontroller::start`].

@@ -19,6 +19,17 @@ pub(super) struct HeldOut {
     pub about_mean_ug: f64,
     /// Sum of squares of the whitened residuals: −2 log likelihood but for a constant.
     pub deviance: f64,
+    /// How many parts were left out, one after the other.
+    pub parts: usize,
+    /// Whether a part is a whole run, with an offset of its own.
+    pub whole_runs: bool,
+}
+
+impl HeldOut {
+    /// The residual without what no model can foretell, µg: a run's own offset.
+    pub fn structure_ug(&self) -> f64 {
+        if self.whole_runs { self.about_mean_ug } else { self.residual_ug }
+    }
 }
 
 impl Case<'_> {
@@ -31,7 +42,9 @@ impl Case<'_> {
         (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1.0);
         let right = product(&white_freedom, &white_left);
         let (mut squares, mut about_mean, mut samples, mut deviance) = (0.0, 0.0, 0.0, 0.0);
-        for (run, rows) in self.folds() {
+        let folds = self.folds();
+        let (parts, whole_runs) = (folds.len(), self.layout.stretches.len() >= FEW_RUNS);
+        for (run, rows) in folds {
             let part = |matrix: &Columns| matrix[run].rows(rows.start, rows.len()).into_owned();
             let own = vec![part(&white_freedom)];
             let others = &normal - product(&own, &own);
@@ -51,7 +64,7 @@ impl Case<'_> {
             deviance += (part(&white_left) - &own[0] * &learnt).norm_squared();
         }
         let rms = |squares: f64| if samples > 0.0 { (squares.max(0.0) / samples).sqrt() } else { 0.0 };
-        HeldOut { residual_ug: rms(squares), about_mean_ug: rms(squares + about_mean), deviance }
+        HeldOut { residual_ug: rms(squares), about_mean_ug: rms(squares + about_mean), deviance, parts, whole_runs }
     }
 
     /// What is left out together: a run, or a stretch of a run where there are too few of them.

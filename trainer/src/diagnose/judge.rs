@@ -56,7 +56,10 @@ pub(super) fn judge(model: &Model, campaign: &Campaign, progress: &dyn Progress)
     let candidates = Candidate::all(&case, &shown);
     let noises = case.noises(&case.left(&start), &case.adapting(&start), None);
     let screening = Screening::new(&case, &start, candidates, &noises).ok_or(DiagnoseError::NoNoise)?;
-    let found = search(&mut case, &start, &screening.visible, noises, progress)?;
+    let mut found = search(&mut case, &start, &screening.visible, noises, progress)?;
+    if let Some(foreseen) = foreseen(&mut case, &start, &found, &screening.visible) {
+        found = foreseen;
+    }
     let mut diagnosis = answer(&case, campaign, &start, found);
     diagnosis.unobservable = unobservable(campaign, &screening);
     Ok(diagnosis)
@@ -172,12 +175,26 @@ fn search(
     Ok(found)
 }
 
+/// Where a large wander hides what likelihood could say, and it named nothing or something weak: the effect that halves
+/// the residual of what was left out, if there is one.
+fn foreseen(case: &mut Case, start: &Known, found: &Findings, candidates: &[Candidate]) -> Option<Findings> {
+    let weak = found.steps.first().is_none_or(|step| step.winner.evidence < WEAK) && found.formula.is_none();
+    if !weak || structure_ug(&found.noises.delta) <= STRUCTURE * case.sample_ug {
+        return None;
+    }
+    let step = case.foreseen(start, candidates, &found.noises)?;
+    let known = start.with(&step.winner.effect, &step.winner.values);
+    case.layout.remember(&known);
+    let noises = case.noises(&case.left(&known), &case.adapting(&known), Some(&found.noises));
+    Some(Findings { known, steps: vec![step], noises, strained: f64::NEG_INFINITY, formula: None })
+}
+
 fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) -> Diagnosis {
     let structure_ug = structure_ug(&found.noises.delta);
     let structured = structure_ug > STRUCTURE * case.sample_ug;
     let before = case.held_out(start, &found.noises);
-    let after_ug = |known: &Known| case.held_out(known, &found.noises).about_mean_ug;
-    let futile = structured && after_ug(&found.known) > (1.0 - REMOVED) * before.about_mean_ug;
+    let after_ug = |known: &Known| case.held_out(known, &found.noises).structure_ug();
+    let futile = structured && after_ug(&found.known) > (1.0 - REMOVED) * before.structure_ug();
     if futile {
         found.known = start.clone();
         found.steps.clear();

@@ -46,6 +46,8 @@ struct Bin {
 struct Peak {
     frequency_hz: f64,
     power: f64,
+    /// What most frequencies of its octave have: wander raises them all, a swing only its own.
+    background: f64,
     segments: f64,
     samples: f64,
 }
@@ -63,13 +65,14 @@ impl Case<'_> {
         let peaks = octaves(&courses);
         let frequencies: usize = peaks.iter().map(|(count, _)| count).sum();
         let scale = spread(&courses);
-        let peaks = peaks.into_iter().map(|(_, peak)| Peak { power: peak.power / scale, ..peak });
+        let peaks = peaks.into_iter().map(|(_, peak)| Peak { power: peak.power / scale.max(peak.background), ..peak });
         let best = peaks.max_by(|a, b| a.excess().total_cmp(&b.excess()))?;
         Some(Telltale {
             depends_on: vec!["time_s".to_owned()],
             period_s: Some(best.frequency_hz.recip()),
             evidence: 2.0 * (best.excess() - (frequencies as f64).ln()),
-            size_ug: self.sample_ug * (2.0 * (best.power - best.segments).max(0.0) * scale / best.samples).sqrt(),
+            size_ug: self.sample_ug
+                * (2.0 * (best.power - best.segments).max(0.0) * scale.max(best.background) / best.samples).sqrt(),
         })
     }
 
@@ -163,8 +166,13 @@ fn octave(courses: &[Course], start_hz: f64, longest_s: f64) -> Option<(usize, P
         let frequency_hz = start_hz * (1.0 + k as f64 / count as f64);
         (frequency_hz, segments.iter().map(|bins| power(bins, frequency_hz)).sum::<f64>())
     });
-    let (frequency_hz, power) = powers.reduce(|| (start_hz, 0.0), |a, b| if b.1 > a.1 { b } else { a });
-    Some((count, Peak { frequency_hz, power, segments: segments.len() as f64, samples }))
+    let mut powers: Vec<(f64, f64)> = powers.collect();
+    powers.sort_unstable_by(|a, b| a.1.total_cmp(&b.1));
+    let (frequency_hz, power) = *powers.last()?;
+    let segments = segments.len() as f64;
+    // Of a sum of exponentials, the median is a third below the mean.
+    let background = powers[powers.len() / 2].1 / (segments - 1.0 / 3.0);
+    Some((count, Peak { frequency_hz, power, background, segments, samples }))
 }
 
 /// Periodogram of one segment, 1 on average for white noise of variance one.

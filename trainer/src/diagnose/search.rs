@@ -79,6 +79,10 @@ const TURNS: usize = 2;
 /// Steps of each fit of the parameters.
 const REFINEMENTS: usize = 4;
 
+/// So many effects are asked what they foretell.
+const FORESEEN: usize = 8;
+/// What was left out must be read with half the error, or no more than a resemblance was found.
+const HALVED: f64 = 0.5;
 /// Share of the evidence that must hold for runs that were left out.
 const FORETOLD: f64 = 0.25;
 /// A shape this close to its bound, as a ratio, was stopped by it.
@@ -152,6 +156,39 @@ impl Case<'_> {
         let gain = fitted(known)? - fitted(&with)?;
         let foretold = self.held_out(known, noises).deviance - self.held_out(&with, noises).deviance;
         Some(foretold > FORETOLD * gain.max(0.0))
+    }
+
+    /// The effect with which what was left out is foretold far better than without, wherever a wander that large hides
+    /// what likelihood could say. The noise is taken to be small, so that effects compete with effects and not with it.
+    pub fn foreseen(&self, known: &Known, candidates: &[Candidate], noises: &Noises) -> Option<Found> {
+        let (left, freedom, held) = (self.left(known), self.adapting(known), self.held(known));
+        let small = noises.small();
+        let benches = self.benches(&left, &freedom, &small)?;
+        let mut screened = self.screen(&benches, known, candidates);
+        screened.retain(|contender| contender.effect.expression.is_none());
+        screened.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        screened.truncate(FORESEEN);
+        let before = self.held_out(known, &small);
+        let tried = screened.into_par_iter().map(|contender| {
+            let own = self.refit(Some(&held), &contender.alone(), &benches, TURNS * REFINEMENTS);
+            let values = own.coefficients.values.concat();
+            let after = self.held_out(&known.with(&contender.effect, &values), &small);
+            let ratio = after.structure_ug() / before.structure_ug();
+            // Every part that was left out counts once, however many samples it has.
+            let price = (before.parts as f64).ln() * freedom_of(&contender.effect) as f64;
+            let evidence = -2.0 * before.parts as f64 * ratio.ln() - price;
+            (ratio, Contender { values, evidence, noises: Some(small), ..contender })
+        });
+        let mut tried: Vec<(f64, Contender)> = tried.collect();
+        tried.retain(|(ratio, contender)| ratio.is_finite() && !contender.is_strained(&self.layout.range_c()));
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (best, _) = tried.first()?;
+        if *best > HALVED {
+            return None;
+        }
+        let mut order = tried.into_iter().map(|(_, contender)| contender);
+        let winner = order.next()?;
+        Some(Found { winner, rivals: order.collect(), strained: f64::NEG_INFINITY, noises: *noises })
     }
 
     fn scene(&self, known: &Known, noises: &Noises) -> Option<Scene> {
