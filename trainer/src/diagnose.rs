@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! layout      the campaign in cells            instrument   residuals, and what retraining could change
-//! whitening   noise as a filter                sum_channel  the sum of the frequencies as a second witness
+//! whitening   noise and its filter             sum_channel  the sum of the frequencies as a second witness
 //! noise_search its sizes                       candidate    every effect at every shape
 //!      └──────────── evidence: the score test ─────────────┘
 //!                        case: one campaign and one model, together
@@ -18,6 +18,7 @@ mod case;
 mod dependence;
 mod distance;
 mod evidence;
+mod filter;
 mod held_out;
 mod hypothesis;
 mod instrument;

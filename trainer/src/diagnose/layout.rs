@@ -16,6 +16,10 @@ pub(super) struct Cell {
     pub samples: f64,
     /// Mean time from the run's first row, s.
     pub time_s: f64,
+    /// Time since the cell before, s.
+    pub since_s: f64,
+    /// What is left since then of a wander with each of [`WANDER_TAUS_S`].
+    pub unfaded: [f64; WANDER_TAUS_S.len()],
     /// Scaled frequency difference.
     pub x: f64,
     /// Scaled temperature.
@@ -33,6 +37,9 @@ pub(super) struct Cell {
     /// Whether the sensor was moved since the cell before.
     pub new_position: bool,
 }
+
+/// Correlation times of the noise's wander, s: two octaves of flicker, and what takes hours.
+pub(super) const WANDER_TAUS_S: [f64; 3] = [60.0, 600.0, 5000.0];
 
 /// One run in cells.
 #[derive(Clone, Debug)]
@@ -156,9 +163,13 @@ fn cells_of(run: &Run, rows: Vec<Range<usize>>, scale: &InputScale, cross: Optio
         let level_g = datum.reference_g;
         let moved = |last: &Cell| (last.level_g - level_g).abs() > SAME_POSITION_G;
         let turned = cross_ug.is_some_and(|cross_ug| (cross_ug - last_cross_ug).unsigned_abs() > 1000);
+        let time_s = times.sum::<f64>() / datum.weight;
+        let since_s = (time_s - found.last().map_or(0.0, |last| last.time_s)).max(0.0);
         found.push(Cell {
             samples: datum.weight,
-            time_s: times.sum::<f64>() / datum.weight,
+            time_s,
+            since_s,
+            unfaded: WANDER_TAUS_S.map(|tau_s| (-since_s / tau_s).exp()),
             x: datum.x,
             t: datum.t,
             level_g,

@@ -1,6 +1,6 @@
 //! Estimates the noise by maximum likelihood: pattern search over the logarithms of its parts.
 
-use super::evidence::{Bench, product};
+use super::evidence::Bench;
 use super::layout::Layout;
 use super::whitening::{BEGINNING, Columns, NoiseModel, PARTS, WALK};
 
@@ -35,10 +35,7 @@ pub(super) fn noise(
 }
 
 fn search(layout: &Layout, residual: &Columns, start: NoiseModel, from: usize) -> NoiseModel {
-    let deviance = |noise: &NoiseModel| {
-        let white = noise.whiten(layout, residual);
-        white.log_det + product(&white.columns, &white.columns)[(0, 0)]
-    };
+    let deviance = |noise: &NoiseModel| noise.deviance(layout, residual);
     let remembers = layout.cells().any(|cell| cell.beginning > 0.0);
     let parts: Vec<usize> = (0..PARTS).filter(|&part| part != BEGINNING || remembers).collect();
     let mut best = (start, deviance(&start));

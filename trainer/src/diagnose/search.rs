@@ -213,20 +213,28 @@ impl Case<'_> {
 
     /// Fits an effect's parameters and the noise in turn, and says how likely that makes what was measured.
     fn contend(&self, scene: &Scene, contender: Contender) -> Option<Contender> {
+        let told = response(contender.effect.about) == Response::Told;
         let (mut own, mut noises) = (contender.alone(), scene.noises);
         for _ in 0..TURNS {
             let benches = self.benches(&scene.left, &scene.freedom, &noises)?;
             own = self.refit(Some(&scene.held), &own, &benches, REFINEMENTS);
             let mut freedom = self.widened(&scene.freedom, &scene.held, &own);
             let mut left = self.left_beside(Some(&scene.held), &own);
-            if response(contender.effect.about) != Response::Told {
+            if !told {
                 // The sum is as it was; its noise is known.
                 (left.sum, freedom.sum) = (None, None);
             }
             let fitted = self.noises(&left, &freedom, Some(&noises));
             noises = Noises { delta: fitted.delta, sum: fitted.sum.or(noises.sum) };
         }
+        // The noise was fitted with the parameters free: they settle under what it has become.
+        let benches = self.benches(&scene.left, &scene.freedom, &noises)?;
+        own = self.refit(Some(&scene.held), &own, &benches, REFINEMENTS);
         let left = self.left_beside(Some(&scene.held), &own);
+        if told {
+            // Difference and sum were free to ask for different sizes: what one size leaves is noise.
+            noises = self.noises(&left, &scene.freedom, Some(&noises));
+        }
         let mut deviance = self.benches(&left, &scene.freedom, &noises)?.deviance();
         if let Some((freed, with)) = self.freed(scene, &left, &own, &noises) {
             let value = self.benches(&freed, &scene.freedom, &with)?.deviance() + self.price();

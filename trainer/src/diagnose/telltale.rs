@@ -46,6 +46,8 @@ struct Suspect {
 
 /// Evidence that a structure must have; there are a hundred to choose from.
 const ENOUGH: f64 = 30.0;
+/// And the kink, which is one question, asked of a smooth instrument.
+const ENOUGH_OF_ONE: f64 = 5.0;
 /// And its size, in units of the noise of a sample.
 const MATTERS: f64 = 0.5;
 /// So many are judged in full, by the noise as estimated and by a small one.
@@ -76,7 +78,9 @@ impl Case<'_> {
         let mut found = scene.followed(&suspects);
         found.extend(scene.poses());
         found.extend(self.swing(known, noises));
-        found.retain(|one| one.evidence > ENOUGH && one.size_ug > MATTERS * self.sample_ug);
+        found.retain(|one| one.evidence > ENOUGH);
+        found.extend(scene.judged(&self.kink()).filter(|kink| kink.evidence > ENOUGH_OF_ONE));
+        found.retain(|one| one.size_ug > MATTERS * self.sample_ug);
         found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         found
     }
@@ -85,13 +89,15 @@ impl Case<'_> {
     pub fn strangest(&self, known: &Known, noises: &Noises) -> f64 {
         let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
         let scene = Scene { case: self, noise: noises.delta, left: &left, freedom: &freedom };
-        scene.followed(&self.structures()).iter().map(|one| one.evidence).fold(f64::NEG_INFINITY, f64::max)
+        let all = scene.followed(&self.structures()).into_iter().chain(self.swing(known, noises));
+        all.map(|one| one.evidence).fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// Structures whose evidence compares with that of effects: a kink's, weighed against a smooth instrument only, says
+    /// too how far training was bent by the very effect that is missing.
     fn structures(&self) -> Vec<Suspect> {
         let mut all = self.days();
         all.extend(self.odd_runs());
-        all.push(self.kink());
         all
     }
 
@@ -172,10 +178,9 @@ impl Scene<'_> {
 
     /// The most striking suspects, judged in full.
     fn followed(&self, suspects: &[Suspect]) -> Vec<Telltale> {
-        let (smooth, free): (Vec<&Suspect>, Vec<&Suspect>) = suspects.iter().partition(|suspect| suspect.smooth);
-        let mut finalists = smooth;
+        let mut finalists: Vec<&Suspect> = Vec::new();
         for noise in [self.noise, self.noise.small()] {
-            for suspect in self.screened(noise, &free) {
+            for suspect in self.screened(noise, suspects) {
                 if !finalists.iter().any(|other| std::ptr::eq(*other, suspect)) {
                     finalists.push(suspect);
                 }
@@ -184,14 +189,14 @@ impl Scene<'_> {
         finalists.into_par_iter().filter_map(|suspect| self.judged(suspect)).collect()
     }
 
-    fn screened<'s>(&self, noise: NoiseModel, suspects: &[&'s Suspect]) -> Vec<&'s Suspect> {
+    fn screened<'s>(&self, noise: NoiseModel, suspects: &'s [Suspect]) -> Vec<&'s Suspect> {
         let Some(bench) = self.bench(noise, self.left, self.freedom) else { return Vec::new() };
         let widths: Vec<usize> = suspects.iter().map(|suspect| width(&suspect.columns)).collect();
         let columns = joined(suspects.iter().map(|suspect| &suspect.columns));
         let price = |width: usize| self.case.price() * width as f64;
         let gains = bench.scores(&columns, &widths).into_iter().map(|score: Score| score.gain());
         let mut order: Vec<(f64, &Suspect)> =
-            gains.zip(&widths).zip(suspects).map(|((gain, width), suspect)| (gain - price(*width), *suspect)).collect();
+            gains.zip(&widths).zip(suspects).map(|((gain, width), suspect)| (gain - price(*width), suspect)).collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0));
         order.into_iter().take(FINALISTS).map(|(_, suspect)| suspect).collect()
     }
