@@ -9,6 +9,7 @@ use protocol::{Blob, Signed};
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::time::Instant;
 use trainer::campaign::{Campaign, Run};
 use trainer::model::Model;
 use trainer::replay::replay;
@@ -52,7 +53,11 @@ impl Verify {
         } else if !holds(&mut link, &model.to_bytes()?)? {
             return self.other();
         }
+        let started = Instant::now();
         let parity = shown(&blob, &campaign, &mut link)?;
+        // Beside the answer, which is the same every time.
+        let per_s = parity.samples as f64 / started.elapsed().as_secs_f64();
+        anstream::eprintln!("{per_s:.0} readings/s, there and back");
         if self.json {
             let Parity { samples, identical, .. } = parity;
             anstream::println!("{:#}", serde_json::json!({ "samples": samples, "identical": identical }));
