@@ -55,14 +55,14 @@ impl Verify {
         }
         let started = Instant::now();
         let parity = shown(&blob, &campaign, &mut link)?;
-        // Beside the answer, which is the same every time.
         let per_s = parity.samples as f64 / started.elapsed().as_secs_f64();
-        anstream::eprintln!("{per_s:.0} readings/s, there and back");
         if self.json {
             let Parity { samples, identical, .. } = parity;
             anstream::println!("{:#}", serde_json::json!({ "samples": samples, "identical": identical }));
         } else {
             anstream::println!("{parity}");
+            // Beside the answer, which is the same every time.
+            anstream::eprintln!("{per_s:.0} readings/s, there and back");
         }
         Ok(if parity.identical == parity.samples { Answer::Yes } else { Answer::No })
     }
