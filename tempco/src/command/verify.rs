@@ -43,6 +43,7 @@ pub struct Verify {
 }
 
 impl Verify {
+    #[expect(clippy::disallowed_methods, reason = "how fast a line is takes a clock")]
     pub fn run(&self) -> Result<Answer, Failure> {
         let model = Model::read(&self.model)?;
         let campaign = arranged(&model, &self.data.read()?)?;
