@@ -172,7 +172,7 @@ pub(super) fn deviance(noise: &NoiseModel, states: &[State], run: &Stretch, valu
 }
 
 /// Most states.
-pub(super) const MOST_STATES: usize = 10;
+const MOST_STATES: usize = 10;
 
 fn deviance_by<const N: usize>(filter: Filter<N>, run: &Stretch, values: &[f64]) -> f64 {
     let mut states = [[0.0]; N];
