@@ -65,9 +65,11 @@ macro_rules! real {
         impl Real for $type {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
+            #[inline]
             fn from_f32(value: f32) -> Self {
                 value as Self
             }
+            #[inline]
             fn from_i64(value: i64) -> Self {
                 /// Apart, or the compiler sees that both ways give the same and takes this one always.
                 #[inline(never)]
@@ -77,24 +79,31 @@ macro_rules! real {
                 // Processors convert 32 bits with one instruction and 64 with a function.
                 i32::try_from(value).map_or_else(|_| wide(value), |value| value as Self)
             }
+            #[inline]
             fn to_f32(self) -> f32 {
                 self as f32
             }
+            #[inline]
             fn exp(self) -> Self {
                 $exp(self)
             }
+            #[inline]
             fn exp_m1(self) -> Self {
                 $exp_m1(self)
             }
+            #[inline]
             fn ln_1p(self) -> Self {
                 $ln_1p(self)
             }
+            #[inline]
             fn sqrt(self) -> Self {
                 $sqrt(self)
             }
+            #[inline]
             fn is_finite(self) -> bool {
                 <$type>::is_finite(self)
             }
+            #[inline]
             fn from_micro(micro: i64) -> Self {
                 Self::from_i64(micro) * $micro
             }
