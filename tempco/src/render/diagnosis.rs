@@ -30,7 +30,8 @@ pub fn verdict(diagnosis: &Diagnosis) -> String {
     let Diagnosis { verdict, findings, residual_ug, residual_after_ug, noise_floor_ug, explainable, .. } = diagnosis;
     let found: Vec<&str> = findings.iter().map(|finding| finding.effect.as_str()).collect();
     let with = match (verdict, found.len()) {
-        (Verdict::Ambiguous, _) => "With the first named",
+        (Verdict::Ambiguous, 1) => "With the first named",
+        (Verdict::Ambiguous, _) => "With the first named of each",
         (_, 1) => "With it",
         _ => "With them",
     };

@@ -9,6 +9,7 @@ use super::whitening::{Columns, NoiseModel};
 use nalgebra::{DMatrix, DVector};
 
 /// The measurements, the instrument, and what it is free to become.
+#[derive(Clone)]
 pub(super) struct Case<'a> {
     /// The cells.
     pub layout: Layout<'a>,
@@ -79,6 +80,13 @@ const REFIT_GAIN: f64 = 0.02;
 const MOST_DAMPING: f64 = 1e6;
 
 impl Case<'_> {
+    /// The same measurements, of which is known how much of what these effects brought along is still there.
+    pub fn remembering(&self, known: &Known) -> Self {
+        let mut case = self.clone();
+        case.layout.remember(known);
+        case
+    }
+
     /// These effects, to be held.
     pub fn held(&self, known: &Known) -> Held {
         Held {

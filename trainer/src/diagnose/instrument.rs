@@ -3,14 +3,16 @@
 use super::layout::{Cell, Layout};
 use super::sum_channel::{Response, response};
 use super::whitening::Columns;
+use crate::expression::Expression;
 use crate::fit::effects::{Chosen, Coefficients, Deed, deeds, mean_deed};
 use crate::model::Model;
 use crate::noise::{rms, sample_sigma_g};
 use crate::train::{HIDDEN_SIZE, OUTPUT_SIZE};
 use firmware_core::activation::{sigmoid, slope};
-use firmware_core::{Network, Scale};
+use firmware_core::effect;
+use firmware_core::{Memory, Network, Scale};
 use nalgebra::DMatrix;
-use protocol::limits::HIDDEN;
+use protocol::limits::{HIDDEN, MAX_PARAMETERS};
 use rayon::prelude::*;
 
 /// g to µg.
@@ -19,6 +21,7 @@ const UG: f64 = 1e6;
 const LEAST_UG: f64 = 1e-3;
 
 /// The static map and the effects that are known so far.
+#[derive(Clone)]
 pub(super) struct Instrument {
     model: Model,
     network: Network<f64>,
@@ -46,6 +49,14 @@ impl Known {
         known
     }
 
+    /// These and others.
+    pub fn and(&self, others: &Self) -> Self {
+        let mut known = self.clone();
+        known.effects.extend(others.effects.iter().cloned());
+        known.coefficients.values.extend(others.coefficients.values.iter().cloned());
+        known
+    }
+
     /// The same effects with other parameters, held within their bounds.
     pub fn at(&self, parameters: &[f64]) -> Self {
         let coefficients = Coefficients::from_parameters(&self.effects, parameters);
@@ -55,6 +66,18 @@ impl Known {
     /// Each by itself.
     pub fn each(&self) -> impl Iterator<Item = Self> {
         self.effects.iter().zip(&self.coefficients.values).map(|(effect, values)| Self::NONE.with(effect, values))
+    }
+
+    /// What each of them remembers.
+    pub fn memories(&self) -> impl Iterator<Item = Memory<f64>> {
+        self.effects.iter().zip(&self.coefficients.values).map(|(chosen, values)| {
+            let mut coefficients = [0.0; MAX_PARAMETERS];
+            coefficients.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value);
+            let leaves_idle = |text: &Expression| chosen.about.parameters.iter().any(|about| text.leaves_idle(about));
+            let idle = chosen.expression.as_ref().is_some_and(leaves_idle);
+            let effect = effect::find::<f64>(chosen.about.id).filter(|_| !idle);
+            effect.map_or(Memory::None, |effect| effect.memory(&coefficients))
+        })
     }
 
     /// Those whose deeds say what happens to the sum of the frequencies.

@@ -4,12 +4,12 @@ use super::DiagnoseError;
 use super::answer::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexplained, Verdict};
 use super::candidate::{Candidate, name_of, with_channels};
 use super::case::{Case, Noises};
-use super::evidence::compressed;
+use super::evidence::{Score, compressed};
 use super::instrument::{Instrument, Known};
 use super::layout::Layout;
 use super::noise_search::first_guess;
 use super::observable::{Screening, unobservable};
-use super::search::{Contender, Found};
+use super::search::{Contender, Found, freedom_of};
 use super::separation::separate;
 use super::sum_channel::SumChannel;
 use super::telltale::Telltale;
@@ -20,6 +20,7 @@ use crate::model::Model;
 use crate::progress::Progress;
 use crate::train::{EffectChoice, choose};
 use firmware_core::effect::Role;
+use nalgebra::DVector;
 use std::collections::BTreeMap;
 
 /// Evidence that an effect must have: twice the logarithm of the likelihood ratio beyond its parameters' price.
@@ -144,12 +145,13 @@ fn search(
 ) -> Result<Findings, DiagnoseError> {
     let mut found =
         Findings { known: start.clone(), steps: Vec::new(), noises, strained: f64::NEG_INFINITY, formula: None };
+    let mut dropped: Vec<String> = Vec::new();
     while found.steps.len() < MOST_FINDINGS {
         if progress.cancelled() {
             return Err(DiagnoseError::Cancelled);
         }
         let Some(next) = case.missing(&found.known, candidates, &found.noises) else { break };
-        if next.winner.evidence < ENOUGH {
+        if next.winner.evidence < ENOUGH || dropped.iter().any(|name| name == name_of(&next.winner.effect)) {
             found.strained = next.strained;
             found.noises = next.noises;
             break;
@@ -166,13 +168,44 @@ fn search(
         }
         let noises = next.winner.noises.unwrap_or(found.noises);
         let known = found.known.with(&next.winner.effect, &next.winner.values);
+        case.layout.remember(&known);
         let benches = case.benches(&case.left(&known), &case.stiff(&known), &noises).ok_or(DiagnoseError::NoNoise)?;
         found.known = case.refit(None, &known, &benches, LAST_STEPS);
         found.noises = noises;
         case.layout.remember(&found.known);
         found.steps.push(next);
+        dropped.extend(prune(case, start, &mut found).ok_or(DiagnoseError::NoNoise)?);
     }
     Ok(found)
+}
+
+/// Takes out again what later findings have made superfluous: an effect that merely resembled them came first.
+fn prune(case: &mut Case, start: &Known, found: &mut Findings) -> Option<Vec<String>> {
+    let mut dropped = Vec::new();
+    // The last finding is as good as it was a moment ago.
+    while let Some(earlier) = found.steps.len().checked_sub(1) {
+        let deviance = |known: &Known| {
+            let benches = case.benches(&case.left(known), &case.stiff(known), &found.noises)?;
+            let known = case.refit(None, known, &benches, LAST_STEPS);
+            let value = case.benches(&case.left(&known), &case.stiff(&known), &found.noises)?.deviance();
+            Some((value, known))
+        };
+        let (with, _) = deviance(&found.known)?;
+        let least = |step: usize| {
+            let (without, known) = deviance(&found.known.without(start.effects.len() + step))?;
+            let price = case.price() * freedom_of(&found.steps[step].winner.effect) as f64;
+            Some((without - with - price, step, known))
+        };
+        let all: Vec<_> = (0..earlier).map(least).collect::<Option<_>>()?;
+        let Some((evidence, step, known)) = all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+        if evidence >= ENOUGH {
+            break;
+        }
+        dropped.push(name_of(&found.steps.remove(step).winner.effect).to_owned());
+        found.known = known;
+        case.layout.remember(&found.known);
+    }
+    Some(dropped)
 }
 
 /// Where a large wander hides what likelihood could say, and it named nothing or something weak: the effect that halves
@@ -192,9 +225,8 @@ fn foreseen(case: &mut Case, start: &Known, found: &Findings, candidates: &[Cand
 fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) -> Diagnosis {
     let structure_ug = structure_ug(&found.noises.delta);
     let structured = structure_ug > STRUCTURE * case.sample_ug;
-    let before = case.held_out(start, &found.noises);
-    let after_ug = |known: &Known| case.held_out(known, &found.noises).structure_ug();
-    let futile = structured && after_ug(&found.known) > (1.0 - REMOVED) * before.structure_ug();
+    let about_mean_ug = |known: &Known| case.held_out(known, &found.noises).structure_ug();
+    let futile = structured && about_mean_ug(&found.known) > (1.0 - REMOVED) * about_mean_ug(start);
     if futile {
         found.known = start.clone();
         found.steps.clear();
@@ -203,14 +235,15 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
     let unexplained =
         structured || found.strained > SURELY_STRAINED || found.formula.is_some() || !telltales.is_empty();
     let dependences = case.dependences(start, &found.known, &found.noises, &campaign.channels);
-    let residual_ug = before.residual_ug;
+    // Foretold as well as the noise without the findings allows.
+    let residual_ug = case.held_out(start, found.steps.first().map_or(&found.noises, |step| &step.noises)).residual_ug;
     let findings = findings(case, start, &found, residual_ug);
     let residual_after_ug = findings.last().map_or(residual_ug, |finding| finding.residual_after_ug);
-    let verdict = match findings.first() {
-        None if unexplained => Verdict::Unexplained,
-        None => Verdict::NothingMissing,
-        Some(first) if first.confounded_with.is_empty() => Verdict::Missing,
-        Some(_) => Verdict::Ambiguous,
+    let verdict = match (findings.is_empty(), unexplained) {
+        (true, true) => Verdict::Unexplained,
+        (true, false) => Verdict::NothingMissing,
+        _ if findings.iter().any(|finding| !finding.confounded_with.is_empty()) => Verdict::Ambiguous,
+        _ => Verdict::Missing,
     };
     Diagnosis {
         verdict,
@@ -297,17 +330,21 @@ impl Case<'_> {
         let parameters = known.coefficients.to_parameters(&known.effects);
         let covariance = self.benches(&self.left(known), &self.stiff(known), noises).and_then(|benches| {
             let (delta, sum) = self.tangents(None, known);
-            Some(benches.normal(&delta, sum.as_ref()).cholesky()?.inverse())
+            let normal = benches.normal(&delta, sum.as_ref());
+            // Where the data say nothing of a parameter, its bounds do.
+            Score { right: DVector::zeros(normal.nrows()), normal }.covariance()
         });
-        let wider: Vec<f64> = parameters
-            .iter()
-            .enumerate()
-            .map(|(i, value)| value + covariance.as_ref().map_or(0.0, |covariance| covariance[(i, i)].max(0.0).sqrt()))
-            .collect();
-        // One sigma up in the optimiser's parameters, seen in the coefficients' own units.
-        let moved = known.at(&wider);
-        let pairs = moved.coefficients.values.iter().zip(&known.coefficients.values);
-        pairs.map(|(up, here)| up.iter().zip(here).map(|(up, here)| (up - here).abs()).collect()).collect()
+        let sigma = |i: usize| covariance.as_ref().map_or(0.0, |covariance| covariance[(i, i)].max(0.0).sqrt());
+        // One sigma up or down in the optimiser's parameters, seen in the coefficients' own units: at a bound, one is nothing.
+        let moved = |sign: f64| {
+            known.at(&parameters.iter().enumerate().map(|(i, value)| value + sign * sigma(i)).collect::<Vec<_>>())
+        };
+        let away = |moved: &[f64], here: &[f64]| moved.iter().zip(here).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>();
+        let [up, down] = [moved(1.0), moved(-1.0)].map(|moved| moved.coefficients.values);
+        let larger = |((up, down), here): ((&Vec<f64>, &Vec<f64>), &Vec<f64>)| {
+            away(up, here).into_iter().zip(away(down, here)).map(|(up, down)| up.max(down)).collect()
+        };
+        up.iter().zip(&down).zip(&known.coefficients.values).map(larger).collect()
     }
 }
 

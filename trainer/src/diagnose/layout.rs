@@ -3,8 +3,7 @@
 use super::instrument::Known;
 use crate::campaign::{Campaign, Run};
 use crate::fit::dataset::{InputScale, cells, mean};
-use firmware_core::{Memory, effect};
-use protocol::limits::MAX_PARAMETERS;
+use firmware_core::Memory;
 use std::ops::{Range, RangeInclusive};
 
 /// One cell: the mean of neighbouring samples at one position.
@@ -90,17 +89,7 @@ impl<'a> Layout<'a> {
     pub fn remember(&mut self, known: &Known) {
         for stretch in &mut self.stretches {
             stretch.cells.iter_mut().for_each(|cell| cell.beginning = 0.0);
-            for (effect, values) in known.effects.iter().zip(&known.coefficients.values) {
-                let mut coefficients = [0.0; MAX_PARAMETERS];
-                coefficients.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value);
-                let idle = effect
-                    .expression
-                    .as_ref()
-                    .is_some_and(|text| effect.about.parameters.iter().any(|about| text.leaves_idle(about)));
-                let memory =
-                    effect::find::<f64>(effect.about.id).filter(|_| !idle).map(|effect| effect.memory(&coefficients));
-                brought_along(stretch, memory.unwrap_or(Memory::None));
-            }
+            known.memories().for_each(|memory| brought_along(stretch, memory));
         }
     }
 

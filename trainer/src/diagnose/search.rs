@@ -128,7 +128,7 @@ impl Case<'_> {
         let mut order: Vec<Contender> = self
             .finalists(&scene, known, candidates)?
             .into_par_iter()
-            .filter_map(|contender| self.contend(&scene, contender))
+            .filter_map(|contender| self.contend(&scene, known, contender))
             .collect();
         order.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         let (strained, mut order): (Vec<_>, Vec<_>) =
@@ -145,17 +145,19 @@ impl Case<'_> {
         Some(Found { winner, rivals: order, strained, noises: scene.noises })
     }
 
-    /// Whether runs that were left out are explained better with the effect than without: the residual alone, as the sum
-    /// of the frequencies has no held-out part of its own.
+    /// Whether runs that were left out are explained better with the effect than without, or are at least read with half
+    /// the error: the residual alone, as the sum of the frequencies has no held-out part of its own.
     fn foretells(&self, known: &Known, contender: &Contender) -> Option<bool> {
         let noises = contender.noises.as_ref()?;
         let with = known.with(&contender.effect, &contender.values);
-        let freedom = self.adapting(known).delta;
+        let case = self.remembering(&with);
+        let freedom = case.adapting(known).delta;
         let fitted =
-            |known: &Known| Some(Bench::new(&self.layout, noises.delta, &self.left(known).delta, &freedom)?.deviance);
+            |known: &Known| Some(Bench::new(&case.layout, noises.delta, &case.left(known).delta, &freedom)?.deviance);
         let gain = fitted(known)? - fitted(&with)?;
-        let foretold = self.held_out(known, noises).deviance - self.held_out(&with, noises).deviance;
-        Some(foretold > FORETOLD * gain.max(0.0))
+        let (before, after) = (case.held_out(known, noises), case.held_out(&with, noises));
+        let halved = after.residual_ug < HALVED * before.residual_ug;
+        Some(halved || before.deviance - after.deviance > FORETOLD * gain.max(0.0))
     }
 
     /// The effect with which what was left out is foretold far better than without, wherever a wander that large hides
@@ -212,39 +214,41 @@ impl Case<'_> {
     }
 
     /// Fits an effect's parameters and the noise in turn, and says how likely that makes what was measured.
-    fn contend(&self, scene: &Scene, contender: Contender) -> Option<Contender> {
+    fn contend(&self, scene: &Scene, known: &Known, contender: Contender) -> Option<Contender> {
         let told = response(contender.effect.about) == Response::Told;
         let (mut own, mut noises) = (contender.alone(), scene.noises);
+        let mut case = self.remembering(&known.and(&own));
         for _ in 0..TURNS {
-            let benches = self.benches(&scene.left, &scene.freedom, &noises)?;
-            own = self.refit(Some(&scene.held), &own, &benches, REFINEMENTS);
-            let mut freedom = self.widened(&scene.freedom, &scene.held, &own);
-            let mut left = self.left_beside(Some(&scene.held), &own);
+            let benches = case.benches(&scene.left, &scene.freedom, &noises)?;
+            own = case.refit(Some(&scene.held), &own, &benches, REFINEMENTS);
+            let mut freedom = case.widened(&scene.freedom, &scene.held, &own);
+            let mut left = case.left_beside(Some(&scene.held), &own);
             if !told {
                 // The sum is as it was; its noise is known.
                 (left.sum, freedom.sum) = (None, None);
             }
-            let fitted = self.noises(&left, &freedom, Some(&noises));
+            let fitted = case.noises(&left, &freedom, Some(&noises));
             noises = Noises { delta: fitted.delta, sum: fitted.sum.or(noises.sum) };
         }
+        case.layout.remember(&known.and(&own));
         // The noise was fitted with the parameters free: they settle under what it has become.
-        let benches = self.benches(&scene.left, &scene.freedom, &noises)?;
-        own = self.refit(Some(&scene.held), &own, &benches, REFINEMENTS);
-        let left = self.left_beside(Some(&scene.held), &own);
+        let benches = case.benches(&scene.left, &scene.freedom, &noises)?;
+        own = case.refit(Some(&scene.held), &own, &benches, REFINEMENTS);
+        let left = case.left_beside(Some(&scene.held), &own);
         if told {
             // Difference and sum were free to ask for different sizes: what one size leaves is noise.
-            noises = self.noises(&left, &scene.freedom, Some(&noises));
+            noises = case.noises(&left, &scene.freedom, Some(&noises));
         }
-        let mut deviance = self.benches(&left, &scene.freedom, &noises)?.deviance();
-        if let Some((freed, with)) = self.freed(scene, &left, &own, &noises) {
-            let value = self.benches(&freed, &scene.freedom, &with)?.deviance() + self.price();
+        let mut deviance = case.benches(&left, &scene.freedom, &noises)?.deviance();
+        if let Some((freed, with)) = case.freed(scene, &left, &own, &noises) {
+            let value = case.benches(&freed, &scene.freedom, &with)?.deviance() + self.price();
             if value < deviance {
                 (deviance, noises) = (value, with);
             }
         }
         let values = own.coefficients.values.concat();
         // Neither side may profit from a noise that was searched for longer.
-        let without = self.benches(&scene.left, &scene.freedom, &noises)?.deviance().min(scene.deviance);
+        let without = case.benches(&scene.left, &scene.freedom, &noises)?.deviance().min(scene.deviance);
         let evidence = without - deviance - self.price() * freedom_of(&contender.effect) as f64;
         Some(Contender { values, evidence, noises: Some(noises), ..contender })
     }

@@ -39,6 +39,7 @@ pub(super) fn response(about: &About) -> Response {
 }
 
 /// The measured sum in cells.
+#[derive(Clone)]
 pub(super) struct SumChannel {
     /// Measured minus a smooth map of the sum, mHz, run by run: one row.
     pub residual: Columns,

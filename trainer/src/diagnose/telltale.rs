@@ -18,9 +18,10 @@ use super::evidence::{Bench, Score, joined, stacked, width};
 use super::instrument::Known;
 use super::layout::{Cell, Stretch};
 use super::noise_search::noise;
-use super::whitening::{Columns, NoiseModel, POSE};
+use super::whitening::{Columns, MOUNTING, NoiseModel, POSE, RUN};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// What gives away that something is missing.
 #[derive(Clone, Debug)]
@@ -54,8 +55,14 @@ const MATTERS: f64 = 0.5;
 const FINALISTS: usize = 3;
 /// How often amplitudes and noise are fitted in turn.
 const TURNS: usize = 2;
+/// Scatters from level to level that are tried beside a kink, in units of the noise of a sample.
+const SCATTERS: [f64; 9] = [0.0, 0.03, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4];
+/// A network that was trained on runs with an offset each follows their mean by this share of its uncertainty.
+const BENT: f64 = 0.5;
 /// A run that covers less than this of the scaled temperature has no course over it.
 const LEAST_COURSE: f64 = 0.1;
+/// Levels are told apart to a thousandth of 1 g.
+const PER_LEVEL: f64 = 1e3;
 /// The solar day and the moon's half day, s.
 const DAYS_S: [f64; 2] = [86_400.0, 44_714.0];
 /// A swing by the calendar must have been followed this long in all, in periods.
@@ -79,18 +86,22 @@ impl Case<'_> {
         found.extend(scene.poses());
         found.extend(self.swing(known, noises));
         found.retain(|one| one.evidence > ENOUGH);
-        found.extend(scene.judged(&self.kink()).filter(|kink| kink.evidence > ENOUGH_OF_ONE));
-        found.retain(|one| one.size_ug > MATTERS * self.sample_ug);
+        found.extend(scene.kinked().filter(|kink| kink.evidence > ENOUGH_OF_ONE));
+        found.retain(|one| self.matters(one));
         found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         found
     }
 
-    /// Most evidence of a structure that no known effect has, where these effects are at work.
+    /// Most evidence of a structure of a size that matters, which no known effect has, where these effects are at work.
     pub fn strangest(&self, known: &Known, noises: &Noises) -> f64 {
         let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
         let scene = Scene { case: self, noise: noises.delta, left: &left, freedom: &freedom };
         let all = scene.followed(&self.structures()).into_iter().chain(self.swing(known, noises));
-        all.map(|one| one.evidence).fold(f64::NEG_INFINITY, f64::max)
+        all.filter(|one| self.matters(one)).map(|one| one.evidence).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    fn matters(&self, telltale: &Telltale) -> bool {
+        telltale.size_ug > MATTERS * self.sample_ug
     }
 
     /// Structures whose evidence compares with that of effects: a kink's, weighed against a smooth instrument only, says
@@ -163,6 +174,19 @@ impl Case<'_> {
     }
 }
 
+impl Case<'_> {
+    /// For each level, one wherever it was applied.
+    fn levels(&self) -> Columns {
+        let level = |cell: &Cell| (cell.level_g * PER_LEVEL).round() as i64;
+        let distinct: Vec<i64> = self.layout.cells().map(level).collect::<BTreeSet<_>>().into_iter().collect();
+        let of = |stretch: &Stretch| {
+            let here = |row: usize, column: usize| level(&stretch.cells[row]) == distinct[column];
+            DMatrix::from_fn(stretch.cells.len(), distinct.len(), |row, column| f64::from(u8::from(here(row, column))))
+        };
+        self.layout.stretches.iter().map(of).collect()
+    }
+}
+
 /// What stays the same while suspects are compared.
 struct Scene<'a> {
     case: &'a Case<'a>,
@@ -220,6 +244,28 @@ impl Scene<'_> {
         let gain = self.bench(without, self.left, freedom)?.deviance - self.bench(with, &fitted, freedom)?.deviance;
         let evidence = gain - self.case.price() * width(&suspect.columns) as f64;
         Some(Telltale { depends_on: suspect.depends_on.clone(), period_s: suspect.period_s, evidence, size_ug })
+    }
+
+    /// The kink, if it is more than levels that scatter about a smooth curve: a table's error is the same at every visit.
+    fn kinked(&self) -> Option<Telltale> {
+        let kink = self.case.kink();
+        let telltale = self.judged(&kink).filter(|one| one.evidence > ENOUGH_OF_ONE && one.size_ug > self.bent_ug())?;
+        let (smooth, levels) = (self.case.instrument.smooth(&self.case.layout), self.case.levels());
+        let deviances = |scatter: &f64| {
+            let levels: Columns = levels.iter().map(|run| run * (scatter * self.case.sample_ug)).collect();
+            let bench = self.bench(self.noise, self.left, &stacked(&smooth, &levels))?;
+            Some([bench.deviance, bench.deviance - bench.score(&kink.columns).gain()])
+        };
+        let tried: Vec<[f64; 2]> = SCATTERS.par_iter().filter_map(deviances).collect();
+        let [without, with] = [0, 1].map(|side| tried.iter().map(|both| both[side]).fold(f64::INFINITY, f64::min));
+        let evidence = without - with - self.case.price() * width(&kink.columns) as f64;
+        Some(Telltale { evidence: telltale.evidence.min(evidence), ..telltale })
+    }
+
+    /// How far training may have been bent by what is new at every start, µg.
+    fn bent_ug(&self) -> f64 {
+        let new_ug = f64::hypot(self.noise.parts[RUN], self.noise.parts[MOUNTING]);
+        BENT * new_ug / (self.left.len() as f64).sqrt()
     }
 
     /// Whether the noise is less likely without a scatter that every position has of its own.

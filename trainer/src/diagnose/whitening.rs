@@ -82,6 +82,7 @@ impl NoiseModel {
         let mut small = *self;
         small.parts.iter_mut().for_each(|part| *part = part.min(self.sample));
         small.parts[WALK] = small.parts[WALK].min(self.sample * SMALL_WALK);
+        small.parts[BEGINNING] = self.parts[BEGINNING];
         small
     }
 
