@@ -136,7 +136,7 @@ pub fn simulated(scenario: &Scenario, seed: u64) -> Result<Recording, String> {
 }
 
 /// Through a file, as a user's would come: rounding is part of the measurement.
-fn read(recording: &Recording) -> Result<Campaign, String> {
+pub fn read(recording: &Recording) -> Result<Campaign, String> {
     let folder = TempDir::new().map_err(|error| error.to_string())?;
     let path = folder.path().join("campaign.csv");
     let mut file = std::fs::File::create(&path).map_err(|error| error.to_string())?;
