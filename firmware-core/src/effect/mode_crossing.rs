@@ -22,7 +22,7 @@ pub const ABOUT: About = About {
         Parameter { name: "amplitude_g", unit: "g", role: Role::Amplitude, start: 0.0, low: -0.1, high: 0.1 },
         Parameter { name: "width_c", unit: "°C", role: Role::Shape, start: 2.0, low: 0.1, high: 20.0 },
         Parameter { name: "crossing_c", unit: "°C", role: Role::Location, start: 25.0, low: -60.0, high: 130.0 },
-        Parameter { name: "shift_c_per_g", unit: "°C/g", role: Role::Location, start: 0.0, low: -40.0, high: 40.0 },
+        Parameter { name: "shift_c_per_g", unit: "°C/g", role: Role::Location, start: 0.0, low: -150.0, high: 150.0 },
     ],
     channel: None,
     needs: "slow temperature ramps with dense temperatures, repeated at two levels of acceleration",

@@ -3,7 +3,6 @@
 use super::case::{Case, Left};
 use super::evidence::{difference, joined};
 use super::instrument::Known;
-use super::layout::Layout;
 use super::whitening::Columns;
 use crate::campaign::Campaign;
 use crate::expression::Expression;
@@ -43,7 +42,7 @@ impl Candidate {
         let still = case.left(&Known::NONE);
         let shapes: Vec<(Chosen, Vec<f64>)> = shown
             .iter()
-            .flat_map(|effect| shapes(effect, &case.layout).into_iter().map(|values| (effect.clone(), values)))
+            .flat_map(|effect| shapes(effect, case).into_iter().map(|values| (effect.clone(), values)))
             .collect();
         shapes.into_par_iter().map(|(effect, values)| Self::new(case, &still, effect, values)).collect()
     }
@@ -98,7 +97,7 @@ pub(super) fn name_of(effect: &Chosen) -> &str {
     effect.expression.as_ref().map_or(effect.about.name, Expression::text)
 }
 
-fn shapes(effect: &Chosen, layout: &Layout) -> Vec<Vec<f64>> {
+fn shapes(effect: &Chosen, case: &Case) -> Vec<Vec<f64>> {
     let searched = effect.about.parameters.iter().filter(|about| about.role == Role::Shape).count();
     let placed = effect.about.parameters.iter().any(|about| about.role == Role::Location);
     let mut found = vec![Vec::new()];
@@ -112,7 +111,7 @@ fn shapes(effect: &Chosen, layout: &Layout) -> Vec<Vec<f64>> {
             Role::Origin => vec![effect.origin],
             Role::Shape if placed => WIDTHS.to_vec(),
             Role::Shape => logarithmic(about, if searched > 1 { SHAPES_OF_SEVERAL } else { SHAPES }),
-            Role::Location => places(about, layout),
+            Role::Location => places(about, case),
         };
         found = found.iter().flat_map(|values| choices.iter().map(move |choice| extended(values, *choice))).collect();
     }
@@ -128,10 +127,12 @@ fn logarithmic(about: &Parameter, count: usize) -> Vec<f64> {
     (0..count).map(|k| about.low * (about.high / about.low).powf(part(k))).collect()
 }
 
-/// Places on the temperature axis as dense as narrow features need; other axes at three values.
-fn places(about: &Parameter, layout: &Layout) -> Vec<f64> {
+/// Places on the temperature axis as dense as narrow features need; how far 1 g moves them as it moves one of the forks.
+fn places(about: &Parameter, case: &Case) -> Vec<f64> {
+    let layout = &case.layout;
     if about.unit != "°C" {
-        return vec![0.4 * about.low, 0.0, 0.4 * about.high];
+        let shift = case.shift_c_per_g().min(about.high);
+        return vec![-shift, 0.0, shift];
     }
     let zero_c = f64::from(layout.scale.temperature_zero_uc) * 1e-6;
     let half_c = layout.scale.temperature_half_span_c;

@@ -78,6 +78,8 @@ const STEP: f64 = 1e-4;
 /// A refit ends when a step gains less than this.
 const REFIT_GAIN: f64 = 0.02;
 const MOST_DAMPING: f64 = 1e6;
+/// Slope of the sum of two forks of silicon near 40 kHz over temperature, where it was not measured.
+const SILICON_HZ_PER_C: f64 = 4.8;
 
 impl Case<'_> {
     /// The same measurements, of which is known how much of what these effects brought along is still there.
@@ -85,6 +87,13 @@ impl Case<'_> {
         let mut case = self.clone();
         case.layout.remember(known);
         case
+    }
+
+    /// By how many °C temperature must change to move a fork as 1 g does: both change its frequency by half of what they
+    /// change difference and sum.
+    pub fn shift_c_per_g(&self) -> f64 {
+        let hz_per_c = self.sum.as_ref().map_or(SILICON_HZ_PER_C, |sum| sum.per_c.abs() * 1e-3);
+        self.instrument.scale_factor_hz_per_g(&self.layout).abs() / hz_per_c.max(f64::MIN_POSITIVE)
     }
 
     /// These effects, to be held.

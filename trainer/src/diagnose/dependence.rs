@@ -8,6 +8,7 @@ use super::instrument::Known;
 use super::layout::{Cell, Stretch};
 use super::whitening::Columns;
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 /// A quantity's value in each cell, run by run.
 struct Quantity {
@@ -24,15 +25,16 @@ impl Case<'_> {
     /// How the residual follows each quantity, without and with the findings.
     pub fn dependences(&self, before: &Known, after: &Known, noises: &Noises, channels: &[String]) -> Vec<Dependence> {
         let bench = |known: &Known| {
-            Bench::new(&self.layout, noises.delta, &self.left(known).delta, &self.adapting(known).delta)
+            let freedom = self.adapting(known).delta;
+            Some((Bench::new(&self.layout, noises.delta, &self.left(known).delta, &freedom)?, freedom))
         };
         let (Some(before), Some(after)) = (bench(before), bench(after)) else { return Vec::new() };
         let judged = |(on, columns): (String, Columns)| {
-            let ((before_ug, chance_before), (after_ug, chance_after)) =
-                (follows(&before, &columns), follows(&after, &columns));
+            let [(before_ug, chance_before), (after_ug, chance_after)] =
+                [&before, &after].map(|(bench, freedom)| follows(bench, freedom, &columns));
             Dependence { on, before_ug, after_ug, chance_before, chance_after }
         };
-        let mut all: Vec<Dependence> = self.followed(channels).into_iter().map(judged).collect();
+        let mut all: Vec<Dependence> = self.followed(channels).into_par_iter().map(judged).collect();
         all.sort_by(|a, b| b.before_ug.total_cmp(&a.before_ug));
         all
     }
@@ -100,14 +102,15 @@ fn smooth(values: &[Vec<f64>]) -> Option<Columns> {
     Some(values.iter().map(columns).collect())
 }
 
-/// RMS of the part that follows the columns, noise deducted, and the probability of as much by chance.
-fn follows(bench: &Bench, columns: &Columns) -> (f64, f64) {
+/// RMS of the part that follows the columns and that the instrument can't absorb, noise deducted, and the probability of
+/// as much by chance.
+fn follows(bench: &Bench, freedom: &Columns, columns: &Columns) -> (f64, f64) {
     let score = bench.score(columns);
     let (Some(amplitudes), Some(covariance)) = (score.amplitudes(), score.covariance()) else { return (0.0, 1.0) };
     let (mut squares, mut noise, mut cells) = (0.0, 0.0, 0.0);
-    for run in columns {
-        squares += (run * &amplitudes).norm_squared();
-        noise += (run * &covariance).component_mul(run).sum();
+    for run in bench.beyond(columns, freedom) {
+        squares += (&run * &amplitudes).norm_squared();
+        noise += (&run * &covariance).component_mul(&run).sum();
         cells += run.nrows() as f64;
     }
     let size = ((squares - noise).max(0.0) / cells).sqrt();

@@ -96,6 +96,13 @@ impl<'a> Bench<'a> {
         places(widths).map(|places| places.map(one).fold((0.0, 0.0), best)).collect()
     }
 
+    /// Columns less what the instrument's `freedom`, the one of this bench, makes of them, cell by cell.
+    pub fn beyond(&self, columns: &Columns, freedom: &Columns) -> Columns {
+        let white = self.noise.whiten(self.layout, columns).columns;
+        let absorbed = self.factor.solve(&product(&self.freedom, &white));
+        columns.iter().zip(freedom).map(|(columns, freedom)| columns - freedom * &absorbed).collect()
+    }
+
     /// The residual less what the instrument's freedom makes of it, cell by cell.
     pub fn adapted(&self, residual: &Columns, freedom: &Columns) -> Columns {
         let own = |(residual, freedom): (&DMatrix<f64>, &DMatrix<f64>)| {

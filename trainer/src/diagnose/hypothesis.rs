@@ -15,7 +15,8 @@ const STEPS: usize = 12;
 pub(super) fn fitted(case: &Case, known: &Known, noises: &Noises, effect: &Chosen) -> Option<Vec<f64>> {
     let candidates = Candidate::all(case, std::slice::from_ref(effect));
     let benches = case.benches(&case.left(known), &case.adapting(known), noises)?;
-    let best = case.screen(&benches, known, &candidates).into_iter().next().filter(|best| best.evidence > ENOUGH)?;
+    let screened = case.screen(&benches, known, &candidates).into_iter();
+    let best = screened.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).filter(|best| best.evidence > ENOUGH)?;
     let fitted = case.refit(Some(&case.held(known)), &best.alone(), &benches, STEPS);
     Some(fitted.coefficients.values.concat())
 }

@@ -29,6 +29,14 @@ impl Contender {
         name_of(&self.effect) == name_of(&other.effect)
     }
 
+    /// Whether one fit would end where the other does: what sits at a place has a valley for each width.
+    fn is_same_start(&self, other: &Self) -> bool {
+        let placed = self.effect.about.parameters.iter().any(|about| about.role == Role::Location);
+        let parameters = self.effect.about.parameters.iter().zip(self.values.iter().zip(&other.values));
+        let width_differs = parameters.into_iter().any(|(about, (a, b))| about.role == Role::Shape && a != b);
+        self.is_same_effect(other) && !(placed && width_differs)
+    }
+
     /// Whether a shape was stopped by the bound of what makes physical sense, or sits where nothing was measured:
     /// then it is something else.
     pub fn is_strained(&self, range_c: &RangeInclusive<f64>) -> bool {
@@ -111,6 +119,17 @@ struct Scene {
     deviance: f64,
 }
 
+/// The first of every effect.
+fn best_of_each(order: Vec<Contender>) -> Vec<Contender> {
+    let mut best: Vec<Contender> = Vec::new();
+    for contender in order {
+        if !best.iter().any(|other| other.is_same_effect(&contender)) {
+            best.push(contender);
+        }
+    }
+    best
+}
+
 /// Parameters that a fit chooses.
 pub(super) fn freedom_of(effect: &Chosen) -> usize {
     effect.about.parameters.iter().filter(|about| about.role != Role::Origin).count()
@@ -131,8 +150,9 @@ impl Case<'_> {
             .filter_map(|contender| self.contend(&scene, known, contender))
             .collect();
         order.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-        let (strained, mut order): (Vec<_>, Vec<_>) =
-            order.into_iter().partition(|contender: &Contender| contender.is_strained(&self.layout.range_c()));
+        let (strained, mut order): (Vec<_>, Vec<_>) = best_of_each(order)
+            .into_iter()
+            .partition(|contender: &Contender| contender.is_strained(&self.layout.range_c()));
         let strained = strained.first().filter(|contender| self.foretells(known, contender).unwrap_or(false));
         let strained = strained.map_or(f64::NEG_INFINITY, |contender| contender.evidence);
         // An effect must foretell runs that its parameters were not fitted to.
@@ -169,6 +189,7 @@ impl Case<'_> {
         let mut screened = self.screen(&benches, known, candidates);
         screened.retain(|contender| contender.effect.expression.is_none());
         screened.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let mut screened = best_of_each(screened);
         screened.truncate(FORESEEN);
         let before = self.held_out(known, &small);
         let tried = screened.into_par_iter().map(|contender| {
@@ -206,8 +227,10 @@ impl Case<'_> {
             let benches = self.benches(&scene.left, &scene.freedom, noises)?;
             let mut screened = self.screen(&benches, known, candidates);
             screened.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-            let is_new = |contender: &Contender| chosen.iter().all(|other| !other.is_same_effect(contender));
-            let next: Vec<Contender> = screened.into_iter().take(most).filter(is_new).collect();
+            let names = best_of_each(screened.clone());
+            let passes = |contender: &Contender| names.iter().take(most).any(|name| name.is_same_effect(contender));
+            let is_new = |contender: &Contender| chosen.iter().all(|other| !other.is_same_start(contender));
+            let next: Vec<Contender> = screened.into_iter().filter(|one| passes(one) && is_new(one)).collect();
             chosen.extend(next);
         }
         Some(chosen)
@@ -272,7 +295,7 @@ impl Case<'_> {
         Some((freed, noises))
     }
 
-    /// The best shape of every effect on the grid.
+    /// The best shape of every effect on the grid, and the best place at every width.
     pub fn screen(&self, benches: &Benches, known: &Known, candidates: &[Candidate]) -> Vec<Contender> {
         let scores = |columns: Vec<&Columns>, bench: &Bench| {
             let widths: Vec<usize> = columns.iter().map(|columns| width(columns)).collect();
@@ -293,7 +316,7 @@ impl Case<'_> {
                 score = score.tied(&sum[index]);
             }
             let contender = self.judged(candidate, &score);
-            match best.iter_mut().find(|other| other.is_same_effect(&contender)) {
+            match best.iter_mut().find(|other| other.is_same_start(&contender)) {
                 Some(other) if other.evidence >= contender.evidence => {}
                 Some(other) => *other = contender,
                 None => best.push(contender),

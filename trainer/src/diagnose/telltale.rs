@@ -232,11 +232,11 @@ impl Scene<'_> {
         let widened = stacked(freedom, &generous(&suspect.columns, self.case.sample_ug));
         let (mut with, mut fitted, mut size_ug) = (self.noise, self.left.clone(), 0.0);
         for _ in 0..TURNS {
-            let score = self.bench(with, self.left, freedom)?.score(&suspect.columns);
+            let bench = self.bench(with, self.left, freedom)?;
+            let score = bench.score(&suspect.columns);
             let amplitudes = DMatrix::from_column_slice(width(&suspect.columns), 1, score.amplitudes()?.as_slice());
             let course: Columns = suspect.columns.iter().map(|run| run * &amplitudes).collect();
-            let beyond = self.bench(with, &course, freedom)?.adapted(&course, freedom);
-            size_ug = self.case.rms_ug(&beyond);
+            size_ug = self.case.rms_ug(&bench.beyond(&course, freedom));
             fitted = self.left.iter().zip(&course).map(|(left, course)| left + course).collect();
             with = noise(&self.case.layout, &fitted, &widened, with, false);
         }
