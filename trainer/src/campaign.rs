@@ -95,6 +95,14 @@ impl Default for Quantity {
     }
 }
 
+impl Quantity {
+    /// Whether the signal is a frequency, of oscillators that lock and of a counter with a clock.
+    #[must_use]
+    pub fn is_frequency(&self) -> bool {
+        self.signal_unit.ends_with("Hz")
+    }
+}
+
 impl Campaign {
     /// A campaign of runs that are already in memory. `channels` names the first entries of every
     /// row's `sample.channels`; times within a run increase.

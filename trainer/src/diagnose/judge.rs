@@ -13,7 +13,7 @@ use super::search::{Contender, Found, freedom_of};
 use super::separation::separate;
 use super::sum_channel::SumChannel;
 use super::telltale::Telltale;
-use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, POSE, POSITION, RUN, WALK, WANDER};
+use super::whitening::{BEGINNING, FLICKER, MOUNTING, NODE, NoiseModel, POSE, POSITION, RUN, WALK, WANDER};
 use crate::campaign::Campaign;
 use crate::fit::dataset::InputScale;
 use crate::model::Model;
@@ -250,7 +250,7 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
         residual_ug,
         residual_after_ug,
         noise_floor_ug: case.sample_ug,
-        explainable: explainable(residual_ug, residual_after_ug, &found.noises.delta),
+        explainable: explainable(case, residual_ug, residual_after_ug, &found.noises.delta),
         findings,
         unobservable: Vec::new(),
         unexplained: unexplained.then(|| unexplained_rest(&found, structure_ug, &telltales, &dependences, campaign)),
@@ -304,8 +304,11 @@ fn parameters(known: &Known, sigmas: &[Vec<f64>], at: usize) -> BTreeMap<String,
 }
 
 /// Share of the square above what no model can remove.
-fn explainable(before_ug: f64, after_ug: f64, noise: &NoiseModel) -> f64 {
-    let parts: f64 = noise.parts.iter().take(WALK).map(|sigma| sigma * sigma).sum();
+fn explainable(case: &Case, before_ug: f64, after_ug: f64, noise: &NoiseModel) -> f64 {
+    let brought_along = case.layout.cells().map(|cell| cell.samples * cell.beginning.powi(2)).sum::<f64>()
+        / case.layout.cells().map(|cell| cell.samples).sum::<f64>();
+    let parts: f64 = noise.parts.iter().take(WALK).map(|sigma| sigma * sigma).sum::<f64>()
+        + noise.parts[BEGINNING].powi(2) * brought_along;
     let excess = before_ug.powi(2) - (noise.sample.powi(2) + parts).min(after_ug.powi(2));
     if excess > 0.0 { ((before_ug.powi(2) - after_ug.powi(2)) / excess).clamp(0.0, 1.0) } else { 0.0 }
 }

@@ -91,6 +91,8 @@ const REFINEMENTS: usize = 4;
 const FORESEEN: usize = 8;
 /// What was left out must be read with half the error, or no more than a resemblance was found.
 const HALVED: f64 = 0.5;
+/// And what was left out must not be read with so much more of it.
+const WORSE: f64 = 1.1;
 /// Share of the evidence that must hold for runs that were left out.
 const FORETOLD: f64 = 0.25;
 /// A shape this close to its bound, as a ratio, was stopped by it.
@@ -150,9 +152,9 @@ impl Case<'_> {
             .filter_map(|contender| self.contend(&scene, known, contender))
             .collect();
         order.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-        let (strained, mut order): (Vec<_>, Vec<_>) = best_of_each(order)
-            .into_iter()
-            .partition(|contender: &Contender| contender.is_strained(&self.layout.range_c()));
+        let (strained, order): (Vec<_>, Vec<_>) =
+            order.into_iter().partition(|contender: &Contender| contender.is_strained(&self.layout.range_c()));
+        let mut order = best_of_each(order);
         let strained = strained.first().filter(|contender| self.foretells(known, contender).unwrap_or(false));
         let strained = strained.map_or(f64::NEG_INFINITY, |contender| contender.evidence);
         // An effect must foretell runs that its parameters were not fitted to.
@@ -176,8 +178,9 @@ impl Case<'_> {
             |known: &Known| Some(Bench::new(&case.layout, noises.delta, &case.left(known).delta, &freedom)?.deviance);
         let gain = fitted(known)? - fitted(&with)?;
         let (before, after) = (case.held_out(known, noises), case.held_out(&with, noises));
+        let worse = after.residual_ug > WORSE * before.residual_ug;
         let halved = after.residual_ug < HALVED * before.residual_ug;
-        Some(halved || before.deviance - after.deviance > FORETOLD * gain.max(0.0))
+        Some(halved || !worse && before.deviance - after.deviance > FORETOLD * gain.max(0.0))
     }
 
     /// The effect with which what was left out is foretold far better than without, wherever a wander that large hides
