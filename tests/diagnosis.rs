@@ -65,6 +65,12 @@ fn named(diagnosis: &Diagnosis) -> Vec<&str> {
     diagnosis.findings.iter().map(|finding| finding.effect.as_str()).collect()
 }
 
+fn named_sorted(diagnosis: &Diagnosis) -> Vec<&str> {
+    let mut names = named(diagnosis);
+    names.sort_unstable();
+    names
+}
+
 #[test]
 fn what_is_hidden_is_named_and_nothing_else() {
     for (seed, name) in (1..).zip(["thermal-lag", "warm-up", "thermal-hysteresis", "supply-voltage"]) {
@@ -78,9 +84,7 @@ fn what_is_hidden_is_named_and_nothing_else() {
 #[test]
 fn two_effects_are_both_named() {
     let diagnosis = diagnosis(&["thermal-lag", "supply-voltage"], 5.0, 5);
-    let mut names = named(&diagnosis);
-    names.sort_unstable();
-    assert_eq!(names, ["supply-voltage", "thermal-lag"], "{diagnosis:#?}");
+    assert_eq!(named_sorted(&diagnosis), ["supply-voltage", "thermal-lag"], "{diagnosis:#?}");
 }
 
 #[test]
@@ -139,9 +143,7 @@ fn what_a_run_brings_along_from_before_does_not_spoil_a_time_constant() {
 #[test]
 fn what_a_later_finding_explains_is_not_kept() {
     let diagnosis = rich_diagnosis(&["stress-relaxation", "g-hysteresis"], 15.0, 19);
-    let mut names = named(&diagnosis);
-    names.sort_unstable();
-    assert_eq!(names, ["g-hysteresis", "stress-relaxation"], "{diagnosis:#?}");
+    assert_eq!(named_sorted(&diagnosis), ["g-hysteresis", "stress-relaxation"], "{diagnosis:#?}");
 }
 
 #[test]

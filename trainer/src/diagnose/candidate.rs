@@ -89,6 +89,11 @@ pub(super) fn needs_frequency(about: &About) -> bool {
     matches!(about.name, "lock-in" | "reference-clock")
 }
 
+/// Whether the effect sits at a place.
+pub(super) fn is_placed(about: &About) -> bool {
+    about.parameters.iter().any(|parameter| parameter.role == Role::Location)
+}
+
 /// How a channel that no effect follows may act; `#` is its name.
 const FORMULAS: [&str; 5] = ["#", "#^2", "# * temperature_c", "# * level_g", "# * temperature_rate"];
 
@@ -105,7 +110,7 @@ pub(super) fn name_of(effect: &Chosen) -> &str {
 
 fn shapes(effect: &Chosen, case: &Case) -> Vec<Vec<f64>> {
     let searched = effect.about.parameters.iter().filter(|about| about.role == Role::Shape).count();
-    let placed = effect.about.parameters.iter().any(|about| about.role == Role::Location);
+    let placed = is_placed(effect.about);
     let mut found = vec![Vec::new()];
     for about in effect.about.parameters {
         let choices: Vec<f64> = match about.role {

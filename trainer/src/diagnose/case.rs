@@ -2,7 +2,7 @@
 
 use super::evidence::{Bench, difference, joined, stacked, width};
 use super::instrument::{Deeds, Instrument, Known};
-use super::layout::Layout;
+use super::layout::{Cell, Layout, Stretch};
 use super::noise_search::{first_guess, noise};
 use super::sum_channel::{Response, SumChannel, response};
 use super::whitening::{Columns, NoiseModel};
@@ -94,6 +94,23 @@ impl Case<'_> {
     pub fn shift_c_per_g(&self) -> f64 {
         let hz_per_c = self.sum.as_ref().map_or(SILICON_HZ_PER_C, |sum| sum.per_c.abs() * 1e-3);
         self.instrument.scale_factor_hz_per_g(&self.layout).abs() / hz_per_c.max(f64::MIN_POSITIVE)
+    }
+
+    /// Columns with a value in each cell.
+    pub fn columns<const N: usize>(&self, of: impl Fn(usize, &Stretch, &Cell) -> [f64; N]) -> Columns {
+        let run = |(index, stretch): (usize, &Stretch)| {
+            let rows = stretch.cells.iter().flat_map(|cell| of(index, stretch, cell));
+            DMatrix::from_row_iterator(stretch.cells.len(), N, rows)
+        };
+        self.layout.stretches.iter().enumerate().map(run).collect()
+    }
+
+    /// RMS over the samples, µg.
+    pub fn rms_ug(&self, course: &Columns) -> f64 {
+        let pairs = self.layout.cells().zip(course.iter().flat_map(|run| run.iter()));
+        let (squares, samples) = pairs
+            .fold((0.0, 0.0), |(sum, all), (cell, value)| (sum + cell.samples * value * value, all + cell.samples));
+        (squares / f64::max(samples, 1.0)).sqrt()
     }
 
     /// These effects, to be held.

@@ -182,8 +182,8 @@ fn search(
 /// Takes out again what later findings have made superfluous: an effect that merely resembled them came first.
 fn prune(case: &mut Case, start: &Known, found: &mut Findings) -> Option<Vec<String>> {
     let mut dropped = Vec::new();
-    // The last finding is as good as it was a moment ago.
-    while let Some(earlier) = found.steps.len().checked_sub(1) {
+    // The last finding is as good as it was a moment ago; where it is alone, there is nothing to ask.
+    while found.steps.len() > 1 {
         let deviance = |known: &Known| {
             let benches = case.benches(&case.left(known), &case.stiff(known), &found.noises)?;
             let known = case.refit(None, known, &benches, LAST_STEPS);
@@ -196,8 +196,8 @@ fn prune(case: &mut Case, start: &Known, found: &mut Findings) -> Option<Vec<Str
             let price = case.price() * freedom_of(&found.steps[step].winner.effect) as f64;
             Some((without - with - price, step, known))
         };
-        let all: Vec<_> = (0..earlier).map(least).collect::<Option<_>>()?;
-        let Some((evidence, step, known)) = all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+        let all: Vec<_> = (0..found.steps.len() - 1).map(least).collect::<Option<_>>()?;
+        let (evidence, step, known) = all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         if evidence >= ENOUGH {
             break;
         }
@@ -305,10 +305,8 @@ fn parameters(known: &Known, sigmas: &[Vec<f64>], at: usize) -> BTreeMap<String,
 
 /// Share of the square above what no model can remove.
 fn explainable(case: &Case, before_ug: f64, after_ug: f64, noise: &NoiseModel) -> f64 {
-    let brought_along = case.layout.cells().map(|cell| cell.samples * cell.beginning.powi(2)).sum::<f64>()
-        / case.layout.cells().map(|cell| cell.samples).sum::<f64>();
-    let parts: f64 = noise.parts.iter().take(WALK).map(|sigma| sigma * sigma).sum::<f64>()
-        + noise.parts[BEGINNING].powi(2) * brought_along;
+    let brought_along_ug = case.rms_ug(&case.columns(|_, _, cell| [cell.beginning * noise.parts[BEGINNING]]));
+    let parts = noise.parts.iter().take(WALK).map(|sigma| sigma * sigma).sum::<f64>() + brought_along_ug.powi(2);
     let excess = before_ug.powi(2) - (noise.sample.powi(2) + parts).min(after_ug.powi(2));
     if excess > 0.0 { ((before_ug.powi(2) - after_ug.powi(2)) / excess).clamp(0.0, 1.0) } else { 0.0 }
 }

@@ -1,6 +1,6 @@
 //! Which effects are missing: forward selection, each step judged with everything else free to adapt.
 
-use super::candidate::{Candidate, name_of};
+use super::candidate::{Candidate, is_placed, name_of};
 use super::case::{Benches, Case, Freedom, Held, Left, Noises};
 use super::evidence::{Bench, Score, difference, joined, width};
 use super::instrument::Known;
@@ -31,10 +31,9 @@ impl Contender {
 
     /// Whether one fit would end where the other does: what sits at a place has a valley for each width.
     fn is_same_start(&self, other: &Self) -> bool {
-        let placed = self.effect.about.parameters.iter().any(|about| about.role == Role::Location);
-        let parameters = self.effect.about.parameters.iter().zip(self.values.iter().zip(&other.values));
-        let width_differs = parameters.into_iter().any(|(about, (a, b))| about.role == Role::Shape && a != b);
-        self.is_same_effect(other) && !(placed && width_differs)
+        let mut parameters = self.effect.about.parameters.iter().zip(self.values.iter().zip(&other.values));
+        let mut width_differs = || parameters.any(|(about, (a, b))| about.role == Role::Shape && a != b);
+        self.is_same_effect(other) && !(is_placed(self.effect.about) && width_differs())
     }
 
     /// Whether a shape was stopped by the bound of what makes physical sense, or sits where nothing was measured:

@@ -41,8 +41,6 @@ struct Suspect {
     depends_on: Vec<String>,
     period_s: Option<f64>,
     columns: Columns,
-    /// Whether only a smooth instrument may absorb it, not whatever a network may be bent to.
-    smooth: bool,
 }
 
 /// Evidence that a structure must have; there are a hundred to choose from.
@@ -76,12 +74,7 @@ impl Case<'_> {
         let scene = Scene { case: self, noise: noises.delta, left: &left, freedom: &freedom };
         let mut suspects = self.structures();
         let other = self.followed(channels).into_iter().filter(|(name, _)| name != TEMPERATURE);
-        suspects.extend(other.map(|(name, columns)| Suspect {
-            depends_on: vec![name],
-            period_s: None,
-            columns,
-            smooth: false,
-        }));
+        suspects.extend(other.map(|(name, columns)| Suspect { depends_on: vec![name], period_s: None, columns }));
         let mut found = scene.followed(&suspects);
         found.extend(scene.poses());
         found.extend(self.swing(known, noises));
@@ -112,15 +105,6 @@ impl Case<'_> {
         all
     }
 
-    /// Columns with a value in each cell.
-    fn columns<const N: usize>(&self, of: impl Fn(usize, &Stretch, &Cell) -> [f64; N]) -> Columns {
-        let run = |(index, stretch): (usize, &Stretch)| {
-            let rows = stretch.cells.iter().flat_map(|cell| of(index, stretch, cell));
-            DMatrix::from_row_iterator(stretch.cells.len(), N, rows)
-        };
-        self.layout.stretches.iter().enumerate().map(run).collect()
-    }
-
     /// Swings by the calendar: of the bias, or of a rig that leans, which shows across the input axis only.
     fn days(&self) -> Vec<Suspect> {
         let dated =
@@ -137,7 +121,6 @@ impl Case<'_> {
                 let size = self.sample_ug * if leans { cell.cross_g } else { 1.0 };
                 [phase.sin() * size, phase.cos() * size]
             }),
-            smooth: false,
         };
         periods.flat_map(|period_s| [swing(period_s, false), swing(period_s, true)]).collect()
     }
@@ -160,7 +143,6 @@ impl Case<'_> {
                     depends_on: vec!["run".to_owned(), "temperature_c".to_owned()],
                     period_s: None,
                     columns: self.columns(of),
-                    smooth: false,
                 }
             })
             .collect()
@@ -170,11 +152,9 @@ impl Case<'_> {
     fn kink(&self) -> Suspect {
         let of = |_: usize, _: &Stretch, cell: &Cell| [cell.level_g.abs(), cell.level_g * cell.level_g.abs()];
         let columns = self.columns(of).into_iter().map(|run| run * self.sample_ug).collect();
-        Suspect { depends_on: vec!["reference_g".to_owned()], period_s: None, columns, smooth: true }
+        Suspect { depends_on: vec!["reference_g".to_owned()], period_s: None, columns }
     }
-}
 
-impl Case<'_> {
     /// For each level, one wherever it was applied.
     fn levels(&self) -> Columns {
         let level = |cell: &Cell| (cell.level_g * PER_LEVEL).round() as i64;
@@ -210,7 +190,7 @@ impl Scene<'_> {
                 }
             }
         }
-        finalists.into_par_iter().filter_map(|suspect| self.judged(suspect)).collect()
+        finalists.into_par_iter().filter_map(|suspect| self.judged(suspect, self.freedom)).collect()
     }
 
     fn screened<'s>(&self, noise: NoiseModel, suspects: &'s [Suspect]) -> Vec<&'s Suspect> {
@@ -225,10 +205,8 @@ impl Scene<'_> {
         order.into_iter().take(FINALISTS).map(|(_, suspect)| suspect).collect()
     }
 
-    /// Fits amplitudes and noise in turn.
-    fn judged(&self, suspect: &Suspect) -> Option<Telltale> {
-        let smooth = suspect.smooth.then(|| self.case.instrument.smooth(&self.case.layout));
-        let freedom = smooth.as_ref().unwrap_or(self.freedom);
+    /// Fits amplitudes and noise in turn, where an instrument of this freedom may absorb what it can.
+    fn judged(&self, suspect: &Suspect, freedom: &Columns) -> Option<Telltale> {
         let widened = stacked(freedom, &generous(&suspect.columns, self.case.sample_ug));
         let (mut with, mut fitted, mut size_ug) = (self.noise, self.left.clone(), 0.0);
         for _ in 0..TURNS {
@@ -248,9 +226,11 @@ impl Scene<'_> {
 
     /// The kink, if it is more than levels that scatter about a smooth curve: a table's error is the same at every visit.
     fn kinked(&self) -> Option<Telltale> {
-        let kink = self.case.kink();
-        let telltale = self.judged(&kink).filter(|one| one.evidence > ENOUGH_OF_ONE && one.size_ug > self.bent_ug())?;
-        let (smooth, levels) = (self.case.instrument.smooth(&self.case.layout), self.case.levels());
+        let (kink, levels) = (self.case.kink(), self.case.levels());
+        // Only a smooth instrument may absorb it, not whatever a network may be bent to.
+        let smooth = self.case.instrument.smooth(&self.case.layout);
+        let is_kink = |one: &Telltale| one.evidence > ENOUGH_OF_ONE && one.size_ug > self.bent_ug();
+        let telltale = self.judged(&kink, &smooth).filter(is_kink)?;
         let deviances = |scatter: &f64| {
             let levels: Columns = levels.iter().map(|run| run * (scatter * self.case.sample_ug)).collect();
             let bench = self.bench(self.noise, self.left, &stacked(&smooth, &levels))?;
@@ -277,15 +257,5 @@ impl Scene<'_> {
         let evidence = self.bench(without, self.left, self.freedom)?.deviance - with - self.case.price();
         let depends_on = vec!["reference_g".to_owned(), "position".to_owned()];
         Some(Telltale { depends_on, period_s: None, evidence, size_ug: self.noise.parts[POSE] })
-    }
-}
-
-impl Case<'_> {
-    /// RMS over the samples, µg.
-    fn rms_ug(&self, course: &Columns) -> f64 {
-        let pairs = self.layout.cells().zip(course.iter().flat_map(|run| run.iter()));
-        let (squares, samples) = pairs
-            .fold((0.0, 0.0), |(sum, all), (cell, value)| (sum + cell.samples * value * value, all + cell.samples));
-        (squares / f64::max(samples, 1.0)).sqrt()
     }
 }
