@@ -5,6 +5,7 @@ pub mod effects;
 pub mod firefly;
 pub mod gradient_descent;
 pub mod levenberg_marquardt;
+pub mod neighbours;
 pub mod network;
 pub mod polynomial;
 pub mod random;

@@ -10,7 +10,7 @@ const SAME_STATE_G: f64 = 1e-3;
 /// A smaller share of neighbours meets at one reference by chance. Their inputs differ, and so does what
 /// the model misses of them.
 const LEAST_SHARE: f64 = 0.1;
-/// Median of |x − y| / √2 of two independent normal values, as a fraction of their σ.
+/// Median of the magnitude of a normal value of mean zero, as a fraction of its σ.
 const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 
 /// Standard deviation of the noise from one sample to the next, g.
@@ -33,9 +33,17 @@ pub fn sample_sigma_g<'a>(runs: impl IntoIterator<Item = (&'a Run, &'a RunResidu
     if (steps.len() as f64) < LEAST_SHARE * pairs as f64 || steps.is_empty() {
         return None;
     }
-    let middle = steps.len() / 2;
-    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(*median / MEDIAN_OF_NORMAL / 2.0_f64.sqrt())
+    Some(normal_sigma(steps) / 2.0_f64.sqrt())
+}
+
+/// Standard deviation of normal values by the median of their magnitudes; 0 for none.
+pub(crate) fn normal_sigma(mut magnitudes: Vec<f64>) -> f64 {
+    let middle = magnitudes.len() / 2;
+    if magnitudes.is_empty() {
+        return 0.0;
+    }
+    let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
+    *median / MEDIAN_OF_NORMAL
 }
 
 /// Where the scatter of a residual comes from, as standard deviations.

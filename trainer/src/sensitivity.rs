@@ -3,8 +3,9 @@
 //! A network can fit −1, 0 and +1 g to a few µg and be wrong by a tenth of a g in between. What gives
 //! it away is its slope ∂a/∂Δf, which for a working sensor is 1/K1(T) everywhere.
 
-use crate::campaign::{Campaign, Run};
-use crate::fit::dataset::{InputScale, merged};
+use crate::campaign::Campaign;
+use crate::fit::dataset::InputScale;
+use crate::fit::neighbours::merged;
 use crate::fit::polynomial::Polynomial;
 use crate::model::Model;
 use firmware_core::Network;
@@ -52,8 +53,7 @@ impl<'a> SlopeError<'a> {
             return None;
         }
         let scale = InputScale::of(&campaign.runs)?;
-        let data: Vec<_> =
-            campaign.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| merged(run, i, &scale)).collect();
+        let data = merged(campaign.runs.iter().enumerate(), &scale);
         Some(Self { slope: SlopeOf::new(model), measured: Polynomial::fit(&data), scale })
     }
 

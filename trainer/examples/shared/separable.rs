@@ -6,7 +6,8 @@
 use protocol::limits::HIDDEN;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use trainer::campaign::Campaign;
-use trainer::fit::dataset::{Datum, InputScale, merged};
+use trainer::fit::dataset::{Datum, InputScale};
+use trainer::fit::neighbours::merged;
 use trainer::fit::network::{Anchors, Fit, Group, NetworkProblem, Prior, ValueRow};
 use trainer::fit::polynomial::Polynomial;
 use trainer::fit::random::between;
@@ -32,8 +33,7 @@ impl Departure {
     /// Of all runs of a campaign.
     pub fn of(campaign: &Campaign) -> Self {
         let scale = InputScale::of(&campaign.runs).expect("a campaign has rows");
-        let runs = campaign.runs.iter().enumerate();
-        let data: Vec<Datum> = runs.flat_map(|(index, run)| merged(run, index, &scale)).collect();
+        let data = merged(campaign.runs.iter().enumerate(), &scale);
         let line = Polynomial::fit_degrees(&data, 1, 1);
         let departure_g = |datum: &Datum| datum.reference_g - line.evaluate(datum.x, datum.t);
         let samples: f64 = data.iter().map(|datum| datum.weight).sum();

@@ -164,7 +164,9 @@ fn places(widths: &[usize]) -> impl Iterator<Item = Range<usize>> {
 pub(super) fn product(a: &Columns, b: &Columns) -> DMatrix<f64> {
     let (rows, columns) = (width(a), width(b));
     let pairs: Vec<_> = a.iter().zip(b).collect();
-    let products: Vec<DMatrix<f64>> = pairs.into_par_iter().map(|(a, b)| a.tr_mul(b)).collect();
+    // Blocks of columns at a time; `tr_mul` takes one pair of columns after the other.
+    let of = |(a, b): (&DMatrix<f64>, &DMatrix<f64>)| if columns > 1 { a.transpose() * b } else { a.tr_mul(b) };
+    let products: Vec<DMatrix<f64>> = pairs.into_par_iter().map(of).collect();
     products.into_iter().fold(DMatrix::zeros(rows, columns), |sum, product| sum + product)
 }
 

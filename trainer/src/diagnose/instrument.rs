@@ -125,7 +125,7 @@ impl Instrument {
             let all = all.unwrap_or_else(|| vec![Deed::default(); stretch.run.rows.len()]);
             stretch.cells.iter().map(|cell| mean_deed(&all[cell.rows.clone()])).collect()
         };
-        layout.stretches.iter().map(of).collect()
+        layout.stretches.par_iter().map(of).collect()
     }
 
     /// Reading minus reference in each cell, µg, under the sum of these deeds.
@@ -137,7 +137,7 @@ impl Instrument {
             });
             DMatrix::from_iterator(stretch.cells.len(), 1, values)
         };
-        layout.stretches.iter().enumerate().map(of).collect()
+        layout.stretches.par_iter().enumerate().map(of).collect()
     }
 
     fn cell_residual_ug(&self, layout: &Layout, cell: &Cell, deed: &Deed) -> f64 {

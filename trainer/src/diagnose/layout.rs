@@ -2,7 +2,8 @@
 
 use super::instrument::Known;
 use crate::campaign::{Campaign, Run};
-use crate::fit::dataset::{InputScale, cells, mean};
+use crate::fit::dataset::{InputScale, mean};
+use crate::fit::neighbours::Neighbours;
 use firmware_core::Memory;
 use std::ops::{Range, RangeInclusive};
 
@@ -71,7 +72,8 @@ impl<'a> Layout<'a> {
     /// The cells of every run of the campaign.
     pub fn new(campaign: &'a Campaign, scale: InputScale, max_gap_us: u32) -> Self {
         let cross = campaign.channels.iter().position(|channel| channel == CROSS_CHANNEL);
-        let stretch = |run: &'a Run| Stretch { run, cells: cells_of(run, cells(run, &scale), &scale, cross) };
+        let neighbours = Neighbours::of(&campaign.runs, &scale);
+        let stretch = |run: &'a Run| Stretch { run, cells: cells_of(run, neighbours.cells(run), &scale, cross) };
         Self { stretches: campaign.runs.iter().map(stretch).collect(), scale, max_gap_us, cross }
     }
 

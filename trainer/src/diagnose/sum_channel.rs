@@ -9,6 +9,7 @@ use super::layout::{Cell, Layout};
 use super::whitening::Columns;
 use crate::campaign::Row;
 use crate::fit::effects::Deed;
+use crate::noise::{normal_sigma, rms};
 use firmware_core::effect::About;
 use nalgebra::{DMatrix, DVector, SVD};
 
@@ -88,7 +89,7 @@ impl SumChannel {
         }
         channel.sample = channel.sample_scatter(layout)?;
         let slopes: Vec<f64> = channel.cells.iter().flatten().map(|(slope, _)| *slope).collect();
-        channel.per_c = crate::noise::rms(&slopes);
+        channel.per_c = rms(&slopes);
         Some(channel)
     }
 
@@ -119,9 +120,7 @@ impl SumChannel {
                 }
             }
         }
-        let middle = steps.len() / 2;
-        let (_, median, _) = (!steps.is_empty()).then(|| steps.select_nth_unstable_by(middle, f64::total_cmp))?;
-        Some((*median / 0.674_489_75 / 2.0_f64.sqrt()).max(1e-6))
+        (!steps.is_empty()).then(|| (normal_sigma(steps) / 2.0_f64.sqrt()).max(1e-6))
     }
 }
 

@@ -1,8 +1,7 @@
-//! What the optimisers eat: scaled inputs and references, neighbours merged.
+//! What the optimisers eat: scaled inputs and references.
 
 use crate::campaign::{Row, Run};
 use protocol::Sample;
-use std::ops::Range;
 
 /// Zeros and half spans of the inputs over the training runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,54 +63,7 @@ pub struct Datum {
     pub run: usize,
 }
 
-/// Neighbours are merged while they lie within this much of the scaled inputs.
-///
-/// The mean of a function over a cell differs from the function at the cell's mean by curvature ·
-/// width²/24: with a departure from the line of 10 mg that is below 0.01 µg.
-const CELL: f64 = 0.01;
-/// And while at most this many samples are merged,
-const MOST_MERGED: usize = 128;
-/// and this many minutes, so that slow drifts keep their shape.
-const MOST_MINUTES: f64 = 10.0;
-
-/// Scaled data of one run, consecutive neighbours at the same reference merged into their mean.
-///
-/// A least-squares fit sees the same normal equations up to the curvature within a cell, and what a
-/// soaked state at 1 Hz repeats thirty times is computed once.
-#[must_use]
-pub fn merged(run: &Run, index: usize, scale: &InputScale) -> Vec<Datum> {
-    cells(run, scale).into_iter().map(|cell| mean(&run.rows[cell], index, scale)).collect()
-}
-
-/// The stretches of a run that [`merged`] takes the means of.
-#[must_use]
-pub fn cells(run: &Run, scale: &InputScale) -> Vec<Range<usize>> {
-    let mut found = Vec::new();
-    let mut start = 0;
-    while let Some(first) = run.rows.get(start) {
-        let joins = |row: &Row| is_neighbour(first, row, scale);
-        let length = run.rows[start..].iter().take(MOST_MERGED).take_while(|row| joins(row)).count();
-        found.push(start..start + length);
-        start += length;
-    }
-    found
-}
-
-fn is_neighbour(first: &Row, row: &Row, scale: &InputScale) -> bool {
-    let ([x0, t0], [x, t]) = (scale.inputs(&first.sample), scale.inputs(&row.sample));
-    let minutes = row.sample.time_us.abs_diff(first.sample.time_us) as f64 / 60e6;
-    (x - x0).abs() < CELL
-        && (t - t0).abs() < CELL
-        && (row.reference_g - first.reference_g).abs() < CELL
-        && row.sample.channels.iter().zip(&first.sample.channels).all(|(a, b)| is_near(*a, *b))
-        && minutes < MOST_MINUTES
-}
-
-/// Auxiliary channels within half a per cent.
-fn is_near(a: i64, b: i64) -> bool {
-    a.abs_diff(b) <= b.unsigned_abs() / 200
-}
-
+/// The mean of neighbouring rows.
 pub(crate) fn mean(rows: &[Row], run: usize, scale: &InputScale) -> Datum {
     let count = rows.len() as f64;
     let mut sum = Datum { x: 0.0, t: 0.0, reference_g: 0.0, weight: count, run };

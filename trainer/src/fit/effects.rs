@@ -4,7 +4,8 @@
 //! their memories see the true history; what they do is averaged over the cells that the optimiser
 //! works on. Their level is the reference: during calibration it is known.
 
-use super::dataset::{InputScale, cells};
+use super::dataset::{InputScale, mean};
+use super::neighbours::Neighbours;
 use super::network::{Group, Rows, Tangent, ValueRow};
 use super::polynomial::Polynomial;
 use crate::campaign::Run;
@@ -210,7 +211,8 @@ impl<'a> MovedRows<'a> {
     #[must_use]
     pub fn new(runs: &[&'a Run], effects: &'a [Chosen], frame: Frame, noise: &Components) -> Self {
         let Frame { scale, line, unit_g, max_gap_us } = frame;
-        let still = |run: &'a Run| (run, still_cells(run, &scale));
+        let neighbours = Neighbours::of(runs.iter().copied(), &scale);
+        let still = |run: &'a Run| (run, still_cells(run, &scale, &neighbours));
         let runs: Vec<_> = runs.iter().copied().map(still).collect();
         let group = |(run, (_, cells)): (usize, &(&Run, Vec<Still>))| Group {
             rows: cells.iter().map(|cell| weigh(run, cell, noise)).collect(),
@@ -247,12 +249,12 @@ impl<'a> MovedRows<'a> {
     }
 }
 
-fn still_cells(run: &Run, scale: &InputScale) -> Vec<Still> {
+fn still_cells(run: &Run, scale: &InputScale, neighbours: &Neighbours) -> Vec<Still> {
     let still = |rows: Range<usize>| {
-        let datum = super::dataset::mean(&run.rows[rows.clone()], 0, scale);
+        let datum = mean(&run.rows[rows.clone()], 0, scale);
         Still { rows, x: datum.x, t: datum.t, reference_g: datum.reference_g }
     };
-    cells(run, scale).into_iter().map(still).collect()
+    neighbours.cells(run).into_iter().map(still).collect()
 }
 
 fn weigh(run: usize, cell: &Still, noise: &Components) -> ValueRow {

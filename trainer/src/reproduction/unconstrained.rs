@@ -5,8 +5,9 @@
 
 use super::column::Lesson;
 use crate::campaign::Run;
-use crate::fit::dataset::{Datum, InputScale, merged};
+use crate::fit::dataset::{Datum, InputScale};
 use crate::fit::levenberg_marquardt::{Limits, Minimum, Problem, Quadratic, Termination, minimise};
+use crate::fit::neighbours::merged;
 use crate::fit::random::{between, stream};
 use crate::model::Model;
 use crate::progress::RestartNews;
@@ -30,7 +31,7 @@ pub(super) fn train(lesson: &Lesson) -> Result<Trained, TrainError> {
     let runs = lesson.split.training.iter().filter_map(|&index| Some((index, lesson.campaign.runs.get(index)?)));
     let runs: Vec<(usize, &Run)> = runs.collect();
     let scale = InputScale::of(runs.iter().map(|(_, run)| *run)).ok_or(TrainError::NoTrainingRuns)?;
-    let data: Vec<Datum> = runs.iter().flat_map(|(index, run)| merged(run, *index, &scale)).collect();
+    let data = merged(runs.iter().copied(), &scale);
     let network = Network::new(&data);
     let minima: Vec<Minimum> =
         (0..lesson.restarts).into_par_iter().map(|index| network.clone().descend(lesson, index)).collect();

@@ -5,8 +5,9 @@ use super::settings::{EffectChoice, TrainSettings};
 use super::{Candidate, TrainError};
 use crate::campaign::{Campaign, Run, Split};
 use crate::expression::Expression;
-use crate::fit::dataset::{Datum, InputScale, merged};
+use crate::fit::dataset::{Datum, InputScale};
 use crate::fit::effects::Chosen;
+use crate::fit::neighbours::merged;
 use crate::fit::polynomial::{MOST_T, Polynomial};
 use crate::model::{Model, ModelDomain, ModelEffect, ModelNetwork, ModelScaling, Provenance, Units};
 use crate::noise::{Components, Mean, rms, sample_sigma_g};
@@ -41,7 +42,7 @@ impl<'a> Task<'a> {
         let runs: Vec<(usize, &Run)> =
             split.training.iter().filter_map(|&index| Some((index, campaign.runs.get(index)?))).collect();
         let scale = InputScale::of(runs.iter().map(|(_, run)| *run)).ok_or(TrainError::NoTrainingRuns)?;
-        let data: Vec<Datum> = runs.iter().flat_map(|(index, run)| merged(run, *index, &scale)).collect();
+        let data = merged(runs.iter().copied(), &scale);
         let polynomial = match settings.scale_factor_hz_per_g {
             Some(stated) => Polynomial::fit_still(&data, scale.delta_f_half_span_hz / stated, MOST_T),
             None => Polynomial::fit(&data),
