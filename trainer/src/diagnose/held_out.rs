@@ -7,16 +7,18 @@ use super::case::Case;
 use super::case::Noises;
 use super::evidence::product;
 use super::instrument::Known;
+use super::layout::Cell;
 use super::whitening::Columns;
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::{Cholesky, DMatrix, Matrix2, Vector2};
 use std::ops::Range;
 
 /// What is read wrong when each run is predicted from the others.
 pub(super) struct HeldOut {
     /// RMS over all samples, µg.
     pub residual_ug: f64,
-    /// The same about the mean of each part that was left out, µg: without what is new at every start.
-    pub about_mean_ug: f64,
+    /// The same without the offset, and what follows the acceleration across the input axis, of each part that was left
+    /// out, µg: without what is new at every start and in every mounting.
+    pub about_rig_ug: f64,
     /// Sum of squares of the whitened residuals: −2 log likelihood but for a constant.
     pub deviance: f64,
     /// How many parts were left out, one after the other.
@@ -26,9 +28,9 @@ pub(super) struct HeldOut {
 }
 
 impl HeldOut {
-    /// The residual without what no model can foretell, µg: a run's own offset.
+    /// The residual without what no model can foretell, µg: a run's own offset and mounting.
     pub fn structure_ug(&self) -> f64 {
-        if self.whole_runs { self.about_mean_ug } else { self.residual_ug }
+        if self.whole_runs { self.about_rig_ug } else { self.residual_ug }
     }
 }
 
@@ -41,7 +43,7 @@ impl Case<'_> {
         let mut normal = product(&white_freedom, &white_freedom);
         (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1.0);
         let right = product(&white_freedom, &white_left);
-        let (mut squares, mut about_mean, mut samples, mut deviance) = (0.0, 0.0, 0.0, 0.0);
+        let (mut squares, mut of_rig, mut samples, mut deviance) = (0.0, 0.0, 0.0, 0.0);
         let folds = self.folds();
         let (parts, whole_runs) = (folds.len(), self.layout.stretches.len() >= FEW_RUNS);
         for (run, rows) in folds {
@@ -53,18 +55,15 @@ impl Case<'_> {
             let learnt = factor.solve(&rest);
             let predicted: DMatrix<f64> = part(&left) - part(&freedom) * &learnt;
             let cells = &self.layout.stretches[run].cells[rows.clone()];
-            let (mut sum, mut own_samples) = (0.0, 0.0);
             for (cell, residual) in cells.iter().zip(predicted.iter()) {
                 squares += cell.samples * residual.powi(2) + (cell.samples - 1.0) * self.sample_ug.powi(2);
-                sum += cell.samples * residual;
-                own_samples += cell.samples;
+                samples += cell.samples;
             }
-            about_mean -= sum * sum / f64::max(own_samples, 1.0);
-            samples += own_samples;
+            of_rig += squares_of_rig(cells, &predicted);
             deviance += (part(&white_left) - &own[0] * &learnt).norm_squared();
         }
         let rms = |squares: f64| if samples > 0.0 { (squares.max(0.0) / samples).sqrt() } else { 0.0 };
-        HeldOut { residual_ug: rms(squares), about_mean_ug: rms(squares + about_mean), deviance, parts, whole_runs }
+        HeldOut { residual_ug: rms(squares), about_rig_ug: rms(squares - of_rig), deviance, parts, whole_runs }
     }
 
     /// What is left out together: a run, or a stretch of a run where there are too few of them.
@@ -79,6 +78,24 @@ impl Case<'_> {
         self.layout.stretches.iter().enumerate().flat_map(of).collect()
     }
 }
+
+/// How much of the sum of squares an offset and a slope over the acceleration across the input axis take up.
+fn squares_of_rig(cells: &[Cell], residual: &DMatrix<f64>) -> f64 {
+    let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
+    for (cell, residual) in cells.iter().zip(residual.iter()) {
+        let columns = Vector2::new(1.0, cell.cross_g);
+        normal += cell.samples * columns * columns.transpose();
+        right += cell.samples * residual * columns;
+    }
+    // Where the sensor was never turned, the mounting is part of the offset.
+    let [offset, mounting] = [normal[(0, 0)], normal[(1, 1)]];
+    let turned = normal.determinant() > LEAST_TURNED * offset * mounting;
+    let solved = turned.then(|| normal.try_inverse()).flatten().map(|inverse| right.dot(&(inverse * right)));
+    solved.unwrap_or_else(|| right[0] * right[0] / offset.max(1.0))
+}
+
+/// A mounting shows if the acceleration across varies by so much of its square.
+const LEAST_TURNED: f64 = 1e-4;
 
 /// With fewer runs, parts of them are left out; so many parts in all.
 const FEW_RUNS: usize = 3;

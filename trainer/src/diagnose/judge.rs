@@ -36,7 +36,7 @@ const CONFOUNDED_SHARE: f64 = 0.1;
 const STRUCTURE: f64 = 1.0;
 /// Evidence of an effect beyond its physical bounds that tells of something unknown: formulas are not exact.
 const SURELY_STRAINED: f64 = 100.0;
-/// Where structure remains, findings must lower the held-out residual about the runs' means by this share, or they are
+/// Where structure remains, findings must lower the held-out residual beyond what the rig does by this share, or they are
 /// not its cause: what merely resembles it does not foretell other runs.
 const REMOVED: f64 = 0.05;
 /// Steps of the last fit of all findings together.
@@ -225,8 +225,8 @@ fn foreseen(case: &mut Case, start: &Known, found: &Findings, candidates: &[Cand
 fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) -> Diagnosis {
     let structure_ug = structure_ug(&found.noises.delta);
     let structured = structure_ug > STRUCTURE * case.sample_ug;
-    let about_mean_ug = |known: &Known| case.held_out(known, &found.noises).structure_ug();
-    let futile = structured && about_mean_ug(&found.known) > (1.0 - REMOVED) * about_mean_ug(start);
+    let about_rig_ug = |known: &Known| case.held_out(known, &found.noises).structure_ug();
+    let futile = structured && about_rig_ug(&found.known) > (1.0 - REMOVED) * about_rig_ug(start);
     if futile {
         found.known = start.clone();
         found.steps.clear();
