@@ -32,6 +32,7 @@ mod planned;
 mod search;
 mod separation;
 mod sum_channel;
+mod suspect;
 mod telltale;
 mod whitening;
 

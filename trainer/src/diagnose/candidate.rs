@@ -33,6 +33,9 @@ const FORMULA_UNIT: f64 = 1e-6;
 const SHAPES: usize = 14;
 /// Shapes along each of several axes.
 const SHAPES_OF_SEVERAL: usize = 6;
+/// How far 1 g moves a place, as shares of how far it moves one of the forks: less or more where what the fork meets follows
+/// the temperature too.
+const SHIFTS: [f64; 7] = [-1.7, -1.2, -0.8, 0.0, 0.8, 1.2, 1.7];
 /// Widths of an effect that sits at a place, °C.
 const WIDTHS: [f64; 3] = [0.7, 2.0, 6.0];
 
@@ -113,7 +116,7 @@ fn shapes(effect: &Chosen, case: &Case) -> Vec<Vec<f64>> {
     let placed = is_placed(effect.about);
     let mut found = vec![Vec::new()];
     for about in effect.about.parameters {
-        let choices: Vec<f64> = match about.role {
+        let choices = |before: &[f64]| match about.role {
             Role::Amplitude if effect.expression.is_some() => vec![FORMULA_UNIT],
             Role::Amplitude => vec![about.high * UNIT],
             Role::Shape if effect.expression.as_ref().is_some_and(|expression| expression.leaves_idle(about)) => {
@@ -122,15 +125,18 @@ fn shapes(effect: &Chosen, case: &Case) -> Vec<Vec<f64>> {
             Role::Origin => vec![effect.origin],
             Role::Shape if placed => WIDTHS.to_vec(),
             Role::Shape => logarithmic(about, if searched > 1 { SHAPES_OF_SEVERAL } else { SHAPES }),
-            Role::Location => places(about, case),
+            Role::Location if about.unit == "°C" => places(case, width_c(effect.about, before)),
+            Role::Location => {
+                SHIFTS.iter().map(|share| (share * case.shift_c_per_g()).clamp(about.low, about.high)).collect()
+            }
         };
-        found = found.iter().flat_map(|values| choices.iter().map(move |choice| extended(values, *choice))).collect();
+        let extended = |before: Vec<f64>| {
+            let next = choices(&before);
+            next.into_iter().map(move |next| before.iter().copied().chain([next]).collect())
+        };
+        found = found.into_iter().flat_map(extended).collect();
     }
     found
-}
-
-fn extended(values: &[f64], next: f64) -> Vec<f64> {
-    values.iter().copied().chain([next]).collect()
 }
 
 fn logarithmic(about: &Parameter, count: usize) -> Vec<f64> {
@@ -138,18 +144,21 @@ fn logarithmic(about: &Parameter, count: usize) -> Vec<f64> {
     (0..count).map(|k| about.low * (about.high / about.low).powf(part(k))).collect()
 }
 
-/// Places on the temperature axis as dense as narrow features need; how far 1 g moves them as it moves one of the forks.
-fn places(about: &Parameter, case: &Case) -> Vec<f64> {
-    let layout = &case.layout;
-    if about.unit != "°C" {
-        let shift = case.shift_c_per_g().min(about.high);
-        return vec![-shift, 0.0, shift];
-    }
-    let zero_c = f64::from(layout.scale.temperature_zero_uc) * 1e-6;
-    let half_c = layout.scale.temperature_half_span_c;
-    let count = (2.0 * half_c / PLACE_STEP_C).ceil().clamp(1.0, 80.0) as usize;
+/// Places on the temperature axis, as dense as a feature of this width needs.
+fn places(case: &Case, width_c: f64) -> Vec<f64> {
+    let scale = &case.layout.scale;
+    let (zero_c, half_c) = (f64::from(scale.temperature_zero_uc) * 1e-6, scale.temperature_half_span_c);
+    let step_c = PLACE_STEP_C.max(width_c * PLACE_STEP);
+    let count = (2.0 * half_c / step_c).ceil().clamp(1.0, 80.0) as usize;
     (0..=count).map(|k| zero_c - half_c + 2.0 * half_c * k as f64 / count as f64).collect()
 }
 
-/// Distance between places, °C.
+/// The width among the parameters chosen so far.
+fn width_c(about: &About, values: &[f64]) -> f64 {
+    let mut pairs = about.parameters.iter().zip(values);
+    pairs.find(|(about, _)| about.role == Role::Shape).map_or(0.0, |(_, value)| *value)
+}
+
+/// Least distance between places, °C, and as a share of the width.
 const PLACE_STEP_C: f64 = 1.5;
+const PLACE_STEP: f64 = 0.7;

@@ -1,0 +1,121 @@
+//! Courses that no known effect has, and that tell of something unknown where the residual follows one.
+
+use super::case::Case;
+use super::layout::{Cell, Stretch};
+use super::whitening::Columns;
+use nalgebra::DMatrix;
+use std::collections::BTreeSet;
+
+/// A structure to look for.
+pub(super) struct Suspect {
+    /// The quantities that it depends on.
+    pub depends_on: Vec<String>,
+    /// Its period, if it has one.
+    pub period_s: Option<f64>,
+    /// Its course in the cells, each free to be of any size.
+    pub columns: Columns,
+}
+
+/// A run that covers less than this of the scaled temperature has no course over it.
+const LEAST_COURSE: f64 = 0.1;
+/// Levels are told apart to a thousandth of 1 g.
+const PER_LEVEL: f64 = 1e3;
+/// The solar day and the moon's half day, s.
+const DAYS_S: [f64; 2] = [86_400.0, 44_714.0];
+/// A swing by the calendar must have been followed this long in all, in periods.
+const LEAST_PERIODS: f64 = 1.5;
+
+impl Case<'_> {
+    /// Structures whose evidence compares with that of effects: a kink's, weighed against a smooth instrument only, says
+    /// too how far training was bent by the very effect that is missing.
+    pub fn structures(&self) -> Vec<Suspect> {
+        let mut all = self.days();
+        all.extend(self.odd_runs());
+        all.extend(self.records());
+        all
+    }
+
+    /// Swings by the calendar: of the bias, or of a rig that leans, which shows across the input axis only.
+    fn days(&self) -> Vec<Suspect> {
+        let dated =
+            self.layout.stretches.iter().all(|stretch| stretch.run.rows.iter().all(|row| row.sample.age_s.is_some()));
+        let followed_s = |stretch: &Stretch| stretch.cells.last().map_or(0.0, |cell| cell.time_s);
+        let followed_s: f64 = self.layout.stretches.iter().map(followed_s).sum();
+        let periods = DAYS_S.into_iter().filter(|period_s| dated && followed_s > LEAST_PERIODS * period_s);
+        let swing = |period_s: f64, leans: bool| Suspect {
+            depends_on: vec!["time_s".to_owned()],
+            period_s: Some(period_s),
+            columns: self.columns(|_, stretch, cell| {
+                let first = &stretch.run.rows[0].sample;
+                let phase = (f64::from(first.age_s.unwrap_or(0)) + cell.time_s) / period_s * std::f64::consts::TAU;
+                let size = self.sample_ug * if leans { cell.cross_g } else { 1.0 };
+                [phase.sin() * size, phase.cos() * size]
+            }),
+        };
+        periods.flat_map(|period_s| [swing(period_s, false), swing(period_s, true)]).collect()
+    }
+
+    /// For each run, a course over temperature of its own.
+    fn odd_runs(&self) -> Vec<Suspect> {
+        let span = |stretch: &Stretch| {
+            let each = || stretch.cells.iter().map(|cell| cell.t);
+            each().fold(f64::MIN, f64::max) - each().fold(f64::MAX, f64::min)
+        };
+        let courses = self.layout.stretches.iter().enumerate().filter(|(_, stretch)| span(stretch) > LEAST_COURSE);
+        courses
+            .map(|(odd, stretch)| {
+                let cells = stretch.cells.len().max(1) as f64;
+                let middle = stretch.cells.iter().map(|cell| cell.t).sum::<f64>() / cells;
+                let of = |index: usize, _: &Stretch, cell: &Cell| {
+                    [if index == odd { (cell.t - middle) * self.sample_ug } else { 0.0 }]
+                };
+                Suspect {
+                    depends_on: vec!["run".to_owned(), "temperature_c".to_owned()],
+                    period_s: None,
+                    columns: self.columns(of),
+                }
+            })
+            .collect()
+    }
+
+    /// What the hottest or coldest moment so far left behind for good.
+    fn records(&self) -> Vec<Suspect> {
+        let mut order: Vec<usize> = (0..self.layout.stretches.len()).collect();
+        // Runs without a date come in the order of the files.
+        order.sort_by_key(|run| self.layout.stretches[*run].run.rows.first().and_then(|row| row.sample.age_s));
+        let record = |sign: f64| {
+            let mut farthest = f64::NEG_INFINITY;
+            let mut columns: Columns = vec![DMatrix::zeros(0, 1); order.len()];
+            for run in &order {
+                let cells = &self.layout.stretches[*run].cells;
+                let so_far = cells.iter().map(|cell| {
+                    farthest = farthest.max(sign * cell.t);
+                    farthest * self.sample_ug
+                });
+                columns[*run] = DMatrix::from_iterator(cells.len(), 1, so_far);
+            }
+            columns
+        };
+        let depends_on = || vec!["temperature_c".to_owned(), "time_s".to_owned()];
+        let suspect = |sign| Suspect { depends_on: depends_on(), period_s: None, columns: record(sign) };
+        [1.0, -1.0].map(suspect).into()
+    }
+
+    /// An asymmetry of the two directions (IEEE Std 1293: K0', K1', K_oq).
+    pub fn kink(&self) -> Suspect {
+        let of = |_: usize, _: &Stretch, cell: &Cell| [cell.level_g.abs(), cell.level_g * cell.level_g.abs()];
+        let columns = self.columns(of).into_iter().map(|run| run * self.sample_ug).collect();
+        Suspect { depends_on: vec!["reference_g".to_owned()], period_s: None, columns }
+    }
+
+    /// For each level, one wherever it was applied.
+    pub fn levels(&self) -> Columns {
+        let level = |cell: &Cell| (cell.level_g * PER_LEVEL).round() as i64;
+        let distinct: Vec<i64> = self.layout.cells().map(level).collect::<BTreeSet<_>>().into_iter().collect();
+        let of = |stretch: &Stretch| {
+            let here = |row: usize, column: usize| level(&stretch.cells[row]) == distinct[column];
+            DMatrix::from_fn(stretch.cells.len(), distinct.len(), |row, column| f64::from(u8::from(here(row, column))))
+        };
+        self.layout.stretches.iter().map(of).collect()
+    }
+}
