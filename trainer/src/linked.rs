@@ -223,7 +223,7 @@ mod tests {
     /// Two runs of so many samples, a minute apart, whose temperature rises by one degree a sample.
     fn campaign(rows: usize) -> Campaign {
         let row = |k: usize| {
-            let (time_us, temperature_uc) = (k as u64 * 60_000_000, k as i32 * 1_000_000);
+            let (time_us, temperature_uc) = (k as u64 * 60_000_000, (k as i32).saturating_mul(1_000_000));
             Row {
                 sample: Sample::from_difference(time_us, 0, temperature_uc),
                 reference_g: 0.0,
