@@ -10,7 +10,7 @@ use trainer::campaign::{Campaign, HoldOut, ReadOptions};
 use trainer::diagnose::{Diagnosis, Verdict, diagnose};
 use trainer::model::Model;
 use trainer::progress::Quiet;
-use trainer::train::{TrainSettings, train};
+use trainer::train::{EffectChoice, TrainSettings, train};
 
 const SHORT: &str = include_str!("scenarios/short.toml");
 
@@ -106,17 +106,44 @@ fn what_nobody_knows_is_called_unexplained() {
 }
 
 #[test]
-fn the_unknown_gives_itself_away_by_the_day_by_the_pose_by_one_run() {
+fn the_unknown_gives_itself_away_by_the_day_by_the_pose_by_the_hottest_moment_so_far() {
     for (seed, name, on, period_s) in [
         (13, "x-tide", "time_s", Some(86_400.0)),
         (14, "x-magnetic", "position", None),
-        (15, "x-annealing-step", "run", None),
+        (15, "x-annealing-step", "temperature_c", None),
     ] {
         let diagnosis = rich_diagnosis(&[name], 2.0, seed);
         assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{name}: {diagnosis:#?}");
         let rest = diagnosis.unexplained.expect("it is described");
         assert!(rest.depends_on.iter().any(|quantity| quantity == on), "{name}: {rest:?}");
         assert!(period_s.is_none() || rest.period_s == period_s, "{name}: {rest:?}");
+    }
+}
+
+#[test]
+fn one_run_unlike_all_others_gives_itself_away() {
+    let mut campaign = measured(&[], 0.0, 20);
+    let odd = campaign.runs.iter_mut().find(|run| run.kind == "ramp").expect("a ramp");
+    // 0.2 mHz/°C, some 5 µg/°C.
+    odd.rows.iter_mut().for_each(|row| row.sample.delta_f_uhz += i64::from(row.sample.temperature_uc) / 5_000);
+    let diagnosis = diagnose(&model(&campaign), &campaign, &Quiet).expect("a diagnosis");
+    assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{diagnosis:#?}");
+    let rest = diagnosis.unexplained.expect("it is described");
+    assert!(rest.depends_on.iter().any(|quantity| quantity == "run"), "{rest:?}");
+}
+
+#[test]
+fn a_signal_that_is_no_frequency_neither_locks_in_nor_has_a_clock() {
+    let mut campaign = measured(&[], 0.0, 21);
+    campaign.quantity.signal_unit = "mV".to_owned();
+    let diagnosis = diagnose(&model(&campaign), &campaign, &Quiet).expect("a diagnosis");
+    for name in ["lock-in", "reference-clock"] {
+        let found = diagnosis.unobservable.iter().find(|one| one.effect == name).expect("it is listed");
+        assert!(found.why.contains("no frequency"), "{}", found.why);
+        let settings = TrainSettings { effects: vec![EffectChoice::named(name)], ..TrainSettings::new(1) };
+        let split = campaign.split(&HoldOut::LastOfEachKind).expect("a split");
+        let error = train(&campaign, &split, &settings, &Quiet).map(|_| ()).expect_err("it can't be fitted");
+        assert!(error.to_string().contains("measured in `mV`"), "{error}");
     }
 }
 
@@ -150,7 +177,7 @@ fn what_a_later_finding_explains_is_not_kept() {
 fn a_model_that_has_the_effect_misses_it_no_more() {
     let campaign = measured(&["warm-up"], 5.0, 11);
     let split = campaign.split(&HoldOut::LastOfEachKind).expect("a split");
-    let effects = vec![trainer::train::EffectChoice::named("warm-up")];
+    let effects = vec![EffectChoice::named("warm-up")];
     let settings = TrainSettings { restarts: 4, effects, ..TrainSettings::new(1) };
     let model = train(&campaign, &split, &settings, &Quiet).expect("a model").model;
     let diagnosis = diagnose(&model, &campaign, &Quiet).expect("a diagnosis");

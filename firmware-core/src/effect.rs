@@ -166,6 +166,12 @@ impl About {
     pub fn takes_program(&self) -> bool {
         find::<f32>(self.id).is_some_and(Effect::takes_program)
     }
+
+    /// Whether only a signal that is a frequency can have it: what locks in, or is counted with a clock.
+    #[must_use]
+    pub fn needs_frequency(&self) -> bool {
+        matches!(self.name, "lock-in" | "reference-clock")
+    }
 }
 
 /// One coefficient of an effect.

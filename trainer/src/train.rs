@@ -76,6 +76,14 @@ pub enum TrainError {
     /// The effect is real, but no device can foresee it.
     #[error("effect `{0}` can't be compensated: no device can foresee it (`tempco effects {0}` says why)")]
     NotOnDevice(String),
+    /// Only oscillators lock in, and only what is counted has a clock.
+    #[error("effect `{effect}` is one of signals that are frequencies, and this one is measured in `{unit}`")]
+    NeedsFrequency {
+        /// The effect.
+        effect: String,
+        /// Unit of the campaign's signal.
+        unit: String,
+    },
     /// The campaign lacks the effect's channel.
     #[error("effect `{effect}` follows the channel `{channel}`, which the campaign doesn't have")]
     NoChannel {

@@ -71,12 +71,11 @@ pub(super) fn amplitudes(about: &About) -> Vec<usize> {
     parameters.filter(|(_, about)| about.role == Role::Amplitude).map(|(index, _)| index).collect()
 }
 
-/// The effects that the campaign has the channels for, and what channels that no effect follows might do.
+/// The effects that the campaign has the signal and the channels for, and what channels that no effect follows might do.
 pub(super) fn with_channels(campaign: &Campaign) -> Vec<Chosen> {
     let runs: Vec<_> = campaign.runs.iter().collect();
     let chosen = |about: &&About| choose(&EffectChoice::named(about.name), campaign, &runs).ok();
-    let applies = |about: &&&About| campaign.quantity.is_frequency() || !needs_frequency(about);
-    let catalogue = effect::ALL.iter().filter(|about| about.is_on_device() && !about.takes_program()).filter(applies);
+    let catalogue = effect::ALL.iter().filter(|about| about.is_on_device() && !about.takes_program());
     let mut found: Vec<Chosen> = catalogue.filter_map(chosen).collect();
     let program = effect::ALL.iter().find(|about| about.takes_program());
     for (about, channel) in program.into_iter().flat_map(|about| strangers(campaign).map(move |name| (about, name))) {
@@ -85,11 +84,6 @@ pub(super) fn with_channels(campaign: &Campaign) -> Vec<Chosen> {
         found.extend(parsed.map(|expression| Chosen { expression: Some(expression), ..Chosen::of(about) }));
     }
     found
-}
-
-/// Whether only a signal that is a frequency can have the effect.
-pub(super) fn needs_frequency(about: &About) -> bool {
-    matches!(about.name, "lock-in" | "reference-clock")
 }
 
 /// Whether the effect sits at a place.

@@ -1,7 +1,7 @@
 //! What a campaign can show, and what not, and why.
 
 use super::answer::Unobservable;
-use super::candidate::{Candidate, needs_frequency};
+use super::candidate::Candidate;
 use super::case::{Case, Noises};
 use super::evidence::{joined, width};
 use super::instrument::Known;
@@ -73,7 +73,7 @@ pub(super) fn unobservable(campaign: &Campaign, screening: &Screening) -> Vec<Un
         });
     let hidden =
         screening.hidden.iter().map(|(name, why)| Unobservable { effect: (*name).to_owned(), why: why.clone() });
-    let unfit = effect::ALL.iter().filter(|about| !campaign.quantity.is_frequency() && needs_frequency(about));
+    let unfit = effect::ALL.iter().filter(|about| !campaign.quantity.is_frequency() && about.needs_frequency());
     let unfit = unfit.map(|about| Unobservable {
         effect: about.name.to_owned(),
         why: format!("the signal is measured in {}: it is no frequency", campaign.quantity.signal_unit),

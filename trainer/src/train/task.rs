@@ -154,6 +154,10 @@ pub(crate) fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) 
     if !about.is_on_device() {
         return Err(TrainError::NotOnDevice(choice.name.clone()));
     }
+    if about.needs_frequency() && !campaign.quantity.is_frequency() {
+        let unit = campaign.quantity.signal_unit.clone();
+        return Err(TrainError::NeedsFrequency { effect: choice.name.clone(), unit });
+    }
     if about.takes_program() {
         return choose_expression(about, choice, campaign, runs);
     }
