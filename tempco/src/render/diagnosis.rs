@@ -192,6 +192,7 @@ fn noise(noise: &Noise) -> String {
         node_ug,
         position_ug,
         pose_ug,
+        turn_ug,
         mounting_ug,
         run_ug,
     } = noise;
@@ -202,6 +203,7 @@ fn noise(noise: &Noise) -> String {
         (node_ug, "µg from node to node"),
         (position_ug, "µg per g of tilt from position to position"),
         (pose_ug, "µg from position to position"),
+        (turn_ug, "µg per g of tilt within hours"),
         (mounting_ug, "µg per g of tilt from mounting to mounting"),
         (run_ug, "µg from run to run"),
     ];

@@ -135,6 +135,7 @@ mod tests {
                 walk_ug_per_sqrt_h: 0.0,
                 position_ug: 0.0,
                 pose_ug: 0.0,
+                turn_ug: 0.0,
                 node_ug: 0.0,
                 mounting_ug: 0.0,
                 run_ug: 0.0,

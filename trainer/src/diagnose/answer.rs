@@ -127,6 +127,8 @@ pub struct Noise {
     pub pose_ug: f64,
     /// Per g across the input axis, from run to run, µg: mounting.
     pub mounting_ug: f64,
+    /// Per g across the input axis, within hours, µg: a rig that stood in one of two ways at a level, nobody knows which.
+    pub turn_ug: f64,
     /// From run to run, µg: turn-on.
     pub run_ug: f64,
 }

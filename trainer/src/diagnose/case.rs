@@ -5,7 +5,7 @@ use super::instrument::{Deeds, Instrument, Known};
 use super::layout::{Cell, Layout, Stretch};
 use super::noise_search::{first_guess, noise};
 use super::sum_channel::{Response, SumChannel, response};
-use super::whitening::{Columns, NoiseModel};
+use super::whitening::{Columns, NoiseModel, TURN, WANDER};
 use nalgebra::{DMatrix, DVector};
 
 /// The measurements, the instrument, and what it is free to become.
@@ -185,8 +185,20 @@ impl Case<'_> {
     pub fn noises(&self, left: &Left, freedom: &Freedom, start: Option<&Noises>) -> Noises {
         let coarse = start.is_none();
         let first = start.map_or_else(|| first_guess(self.sample_ug, self.ug_per_c), |noises| noises.delta);
-        let delta = noise(&self.layout, &left.delta, &freedom.delta, first, coarse);
+        let mut delta = noise(&self.layout, &left.delta, &freedom.delta, first, coarse);
+        if coarse && self.layout.may_turn_unseen() {
+            delta = self.turned(left, freedom, delta).unwrap_or(delta);
+        }
         Noises { delta, sum: self.sum_noise(left, freedom, start) }
+    }
+
+    /// The noise of a rig that was turned over unseen, if that makes what was measured more likely.
+    fn turned(&self, left: &Left, freedom: &Freedom, without: NoiseModel) -> Option<NoiseModel> {
+        let mut start = without;
+        [TURN, WANDER].into_iter().for_each(|part| start.parts[part] = self.sample_ug);
+        let with = noise(&self.layout, &left.delta, &freedom.delta, start, false);
+        let deviance = |noise| Some(Bench::new(&self.layout, noise, &left.delta, &freedom.delta)?.deviance);
+        (deviance(with)? + self.price() < deviance(without)?).then_some(with)
     }
 
     /// The same of the sum alone.

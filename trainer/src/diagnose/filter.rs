@@ -7,7 +7,7 @@
 //!   x ← K x            e = (y − hᵀx)        x ← x + g e      white value e/√v
 //! ```
 
-use super::layout::{Cell, Stretch};
+use super::layout::{Cell, SLOWEST, Stretch};
 use super::whitening::NoiseModel;
 use nalgebra::DMatrix;
 
@@ -40,6 +40,8 @@ pub(super) enum Kind {
     Node,
     /// Fades with one of the times of `layout::WANDER_TAUS_S`.
     Fading(usize),
+    /// Fades within hours, per g across the input axis.
+    Turning,
     /// A random walk.
     Walk,
     /// As much as is left of what effects brought along.
@@ -50,7 +52,7 @@ impl Kind {
     /// How it shows in a cell.
     fn seen(self, cell: &Cell) -> f64 {
         match self {
-            Self::Mounting | Self::Position => cell.cross_g,
+            Self::Mounting | Self::Position | Self::Turning => cell.cross_g,
             Self::Beginning => cell.beginning,
             _ => 1.0,
         }
@@ -62,6 +64,7 @@ impl Kind {
             Self::Position | Self::Pose if cell.new_position => 0.0,
             Self::Node if cell.new_node => 0.0,
             Self::Fading(which) => cell.unfaded[which],
+            Self::Turning => cell.unfaded[SLOWEST],
             _ => 1.0,
         }
     }
@@ -172,7 +175,7 @@ pub(super) fn deviance(noise: &NoiseModel, states: &[State], run: &Stretch, valu
 }
 
 /// Most states.
-const MOST_STATES: usize = 10;
+const MOST_STATES: usize = 11;
 
 fn deviance_by<const N: usize>(filter: Filter<N>, run: &Stretch, values: &[f64]) -> f64 {
     let mut states = [[0.0]; N];
@@ -258,6 +261,7 @@ mod tests {
                 Kind::Position => across * all_kept(|cell| cell.new_position),
                 Kind::Pose => all_kept(|cell| cell.new_position),
                 Kind::Node => all_kept(|cell| cell.new_node),
+                Kind::Turning => across * (-(one.time_s - other.time_s).abs() / WANDER_TAUS_S[SLOWEST]).exp(),
                 Kind::Fading(which) => (-(one.time_s - other.time_s).abs() / WANDER_TAUS_S[which]).exp(),
                 Kind::Walk => cell(first).time_s - cell(0).time_s,
                 Kind::Beginning => one.beginning * other.beginning,
@@ -278,6 +282,7 @@ mod tests {
             (Kind::Fading(2), 7.0),
             (Kind::Beginning, 60.0),
             (Kind::Fading(1), 4.0),
+            (Kind::Turning, 30.0),
         ];
         let states = kinds.map(|(kind, sigma)| State { kind, variance: sigma * sigma });
         let run = Run { name: String::new(), kind: String::new(), source: PathBuf::new(), rows: Vec::new() };

@@ -100,3 +100,44 @@ const LEAST_TURNED: f64 = 1e-4;
 /// With fewer runs, parts of them are left out; so many parts in all.
 const FEW_RUNS: usize = 3;
 const PARTS_OF_FEW: usize = 12;
+
+#[cfg(test)]
+mod tests {
+    use super::super::layout::WANDER_TAUS_S;
+    use super::*;
+
+    const CELLS: usize = 20;
+
+    fn cell(index: usize, cross_g: f64) -> Cell {
+        Cell {
+            rows: index..index + 1,
+            samples: 1.0 + (index % 3) as f64,
+            time_s: index as f64,
+            since_s: 1.0,
+            unfaded: WANDER_TAUS_S.map(|tau_s| (-1.0 / tau_s).exp()),
+            x: 0.0,
+            t: 0.0,
+            level_g: 0.0,
+            cross_g,
+            unseen_c: 0.0,
+            beginning: 0.0,
+            new_node: false,
+            new_position: false,
+        }
+    }
+
+    #[test]
+    fn an_offset_and_a_tilt_are_the_rigs_and_a_tilt_of_what_was_never_turned_is_an_offset() {
+        let course = |cells: &[Cell]| DMatrix::from_fn(CELLS, 1, |row, _| 150.0 - 90.0 * cells[row].cross_g);
+        let squares = |cells: &[Cell]| -> f64 {
+            cells.iter().zip(course(cells).iter()).map(|(cell, value)| cell.samples * value * value).sum()
+        };
+        let turned: Vec<Cell> = (0..CELLS).map(|index| cell(index, index as f64 / 20.0)).collect();
+        assert!((squares_of_rig(&turned, &course(&turned)) / squares(&turned) - 1.0).abs() < 1e-9);
+        let still: Vec<Cell> = (0..CELLS).map(|index| cell(index, 1.0)).collect();
+        assert!((squares_of_rig(&still, &course(&still)) / squares(&still) - 1.0).abs() < 1e-9);
+        // What swings within the run is neither.
+        let swing = DMatrix::from_fn(CELLS, 1, |row, _| if row % 2 == 0 { 10.0 } else { -10.0 });
+        assert!(squares_of_rig(&turned, &swing) < 0.1 * 100.0 * turned.iter().map(|cell| cell.samples).sum::<f64>());
+    }
+}

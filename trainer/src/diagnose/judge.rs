@@ -13,7 +13,7 @@ use super::search::{Contender, Found, freedom_of};
 use super::separation::separate;
 use super::sum_channel::SumChannel;
 use super::telltale::Telltale;
-use super::whitening::{BEGINNING, FLICKER, MOUNTING, NODE, NoiseModel, POSE, POSITION, RUN, WALK, WANDER};
+use super::whitening::{BEGINNING, FLICKER, MOUNTING, NODE, NoiseModel, POSE, POSITION, RUN, TURN, WALK, WANDER};
 use crate::campaign::Campaign;
 use crate::fit::dataset::InputScale;
 use crate::model::Model;
@@ -321,6 +321,7 @@ fn noise(noise: &NoiseModel) -> Noise {
         position_ug: noise.parts[POSITION],
         pose_ug: noise.parts[POSE],
         mounting_ug: noise.parts[MOUNTING],
+        turn_ug: noise.parts[TURN],
         run_ug: noise.parts[RUN],
     }
 }

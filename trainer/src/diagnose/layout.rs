@@ -40,6 +40,8 @@ pub(super) struct Cell {
 
 /// Correlation times of the noise's wander, s: two octaves of flicker, and what takes hours.
 pub(super) const WANDER_TAUS_S: [f64; 3] = [60.0, 600.0, 5000.0];
+/// The last of them.
+pub(super) const SLOWEST: usize = 2;
 
 /// One run in cells.
 #[derive(Clone, Debug)]
@@ -104,6 +106,11 @@ impl<'a> Layout<'a> {
     pub fn is_still(&self) -> bool {
         let levels = || self.cells().map(|cell| cell.level_g);
         levels().fold(f64::MIN, f64::max) - levels().fold(f64::MAX, f64::min) < SAME_POSITION_G
+    }
+
+    /// Whether the rig may have been turned over unseen: at one level it stands in two ways.
+    pub fn may_turn_unseen(&self) -> bool {
+        self.cross.is_none() && !self.is_still()
     }
 
     /// From the lowest to the highest temperature, °C.

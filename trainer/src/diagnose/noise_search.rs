@@ -2,7 +2,7 @@
 
 use super::evidence::Bench;
 use super::layout::Layout;
-use super::whitening::{BEGINNING, Columns, NoiseModel, PARTS, WALK};
+use super::whitening::{BEGINNING, Columns, NoiseModel, PARTS, TURN, WALK};
 
 /// Parts below this share of the sample noise make no difference.
 const LEAST: f64 = 0.02;
@@ -86,9 +86,10 @@ fn changed(noise: &NoiseModel, part: usize, factor: f64) -> Option<NoiseModel> {
     (next.parts[part] != noise.parts[part]).then_some(next)
 }
 
-/// Where the search begins: every part about as large as the sample noise.
+/// Where the search begins: every part about as large as the sample noise, none for what must prove itself (`TURN`).
 pub(super) fn first_guess(sample: f64, per_c: f64) -> NoiseModel {
     let mut parts = [sample; PARTS];
     parts[WALK] = sample / WALK_S.sqrt() * 0.3;
+    parts[TURN] = 0.0;
     NoiseModel { sample, per_c, parts }
 }

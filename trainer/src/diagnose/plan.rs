@@ -12,7 +12,7 @@ use super::hypothesis::{fitted, typical};
 use super::instrument::Known;
 use super::judge::{case, in_model};
 use super::planned::joint;
-use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, PARTS, POSE, POSITION, RUN, WALK, WANDER};
+use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, PARTS, POSE, POSITION, RUN, TURN, WALK, WANDER};
 use super::{DiagnoseError, candidate::with_channels};
 use crate::campaign::{Campaign, Quantity, Run};
 use crate::fit::effects::Chosen;
@@ -334,6 +334,7 @@ fn noise(diagnosis: &Diagnosis, per_c: f64) -> NoiseModel {
         (MOUNTING, found.mounting_ug),
         (POSITION, found.position_ug),
         (POSE, found.pose_ug),
+        (TURN, found.turn_ug),
         (NODE, found.node_ug),
         (FLICKER, found.flicker_ug),
         (WANDER, found.wander_ug),

@@ -19,7 +19,7 @@ use super::evidence::{Bench, Score, joined, stacked, width};
 use super::instrument::Known;
 use super::noise_search::noise;
 use super::suspect::Suspect;
-use super::whitening::{Columns, MOUNTING, NoiseModel, POSE, RUN};
+use super::whitening::{Columns, MOUNTING, NoiseModel, POSE, POSITION, RUN, TURN};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -39,7 +39,7 @@ pub(super) struct Telltale {
 /// Evidence that a structure must have; there are a hundred to choose from.
 const ENOUGH: f64 = 30.0;
 /// And the kink, which is one question, asked of a smooth instrument.
-const ENOUGH_OF_ONE: f64 = 5.0;
+const ENOUGH_OF_ONE: f64 = 10.0;
 /// And its size, in units of the noise of a sample.
 const MATTERS: f64 = 0.5;
 /// So many are judged in full, by the noise as estimated and by a small one.
@@ -157,10 +157,10 @@ impl Scene<'_> {
         Some(Telltale { evidence: telltale.evidence.min(evidence), ..telltale })
     }
 
-    /// How far training may have been bent by what is new at every start, µg.
+    /// How far training may have been bent by what is new at every start and at every position, µg.
     fn bent_ug(&self) -> f64 {
-        let new_ug = f64::hypot(self.noise.parts[RUN], self.noise.parts[MOUNTING]);
-        BENT * new_ug / (self.left.len() as f64).sqrt()
+        let squares = [RUN, MOUNTING, POSITION, TURN].map(|part| self.noise.parts[part].powi(2));
+        BENT * (squares.iter().sum::<f64>() / self.left.len() as f64).sqrt()
     }
 
     /// Whether the noise is less likely without a scatter that every position has of its own.

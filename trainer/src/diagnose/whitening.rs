@@ -26,7 +26,7 @@ pub(super) struct NoiseModel {
 }
 
 /// How many parts there are.
-pub(super) const PARTS: usize = 9;
+pub(super) const PARTS: usize = 10;
 /// From run to run.
 pub(super) const RUN: usize = 0;
 /// From run to run, per g across the input axis.
@@ -45,6 +45,8 @@ pub(super) const WALK: usize = 6;
 pub(super) const BEGINNING: usize = 7;
 /// From position to position, whatever acceleration lies across the input axis: no table does that.
 pub(super) const POSE: usize = 8;
+/// Wander within hours, per g across the input axis: at one level a rig stands in two ways, and nobody wrote down in which.
+pub(super) const TURN: usize = 9;
 
 /// Columns whose noise is white with variance one.
 pub(super) struct Whitened {
@@ -90,13 +92,13 @@ impl NoiseModel {
     pub fn calm(&self) -> Self {
         let mut calm = *self;
         let small = self.small();
-        [FLICKER, WANDER, WALK].into_iter().for_each(|part| calm.parts[part] = small.parts[part]);
+        [FLICKER, WANDER, WALK, TURN].into_iter().for_each(|part| calm.parts[part] = small.parts[part]);
         calm
     }
 
     /// The states that make a difference.
     fn states(&self) -> Vec<State> {
-        let [run, mounting, position, node, flicker, wander, walk, beginning, pose] = self.parts;
+        let [run, mounting, position, node, flicker, wander, walk, beginning, pose, turn] = self.parts;
         let all = [
             (Kind::Constant, run),
             (Kind::Mounting, mounting),
@@ -108,6 +110,7 @@ impl NoiseModel {
             (Kind::Walk, walk * 60.0),
             (Kind::Beginning, beginning),
             (Kind::Pose, pose),
+            (Kind::Turning, turn),
         ];
         let matters = |&(_, sigma): &(Kind, f64)| sigma > self.sample * NOTHING;
         let state = |(kind, sigma): (Kind, f64)| State { kind, variance: sigma * sigma };
