@@ -90,6 +90,8 @@ const REFINEMENTS: usize = 4;
 const FORESEEN: usize = 8;
 /// What was left out must be read with half the error, or no more than a resemblance was found.
 const HALVED: f64 = 0.5;
+/// Or what neither start nor mounting explains must be lowered to this share.
+const LOWERED: f64 = 0.9;
 /// And what was left out must not be read with so much more of it.
 const WORSE: f64 = 1.1;
 /// Share of the evidence that must hold for runs that were left out.
@@ -167,7 +169,9 @@ impl Case<'_> {
     }
 
     /// Whether runs that were left out are explained better with the effect than without, or are at least read with half
-    /// the error: the residual alone, as the sum of the frequencies has no held-out part of its own.
+    /// the error, or with clearly less of what the rig doesn't explain: the residual alone, as the sum of the frequencies
+    /// has no held-out part of its own. Likelihood alone would not do: it weighs most where the noise is least, and there
+    /// no formula is exact.
     fn foretells(&self, known: &Known, contender: &Contender) -> Option<bool> {
         let noises = contender.noises.as_ref()?;
         let with = known.with(&contender.effect, &contender.values);
@@ -179,7 +183,8 @@ impl Case<'_> {
         let (before, after) = (case.held_out(known, noises), case.held_out(&with, noises));
         let worse = after.residual_ug > WORSE * before.residual_ug;
         let halved = after.residual_ug < HALVED * before.residual_ug;
-        Some(halved || !worse && before.deviance - after.deviance > FORETOLD * gain.max(0.0))
+        let lowered = !worse && after.structure_ug() < LOWERED * before.structure_ug();
+        Some(halved || lowered || !worse && before.deviance - after.deviance > FORETOLD * gain.max(0.0))
     }
 
     /// The effect with which what was left out is foretold far better than without, wherever a wander that large hides
