@@ -31,7 +31,6 @@ impl Case<'_> {
     pub fn structures(&self) -> Vec<Suspect> {
         let mut all = self.days();
         all.extend(self.odd_runs());
-        all.extend(self.records());
         all
     }
 
@@ -79,7 +78,7 @@ impl Case<'_> {
     }
 
     /// What the hottest or coldest moment so far left behind for good.
-    fn records(&self) -> Vec<Suspect> {
+    pub fn records(&self) -> Vec<Suspect> {
         let mut order: Vec<usize> = (0..self.layout.stretches.len()).collect();
         // Runs without a date come in the order of the files.
         order.sort_by_key(|run| self.layout.stretches[*run].run.rows.first().and_then(|row| row.sample.age_s));

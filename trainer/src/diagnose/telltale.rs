@@ -38,7 +38,7 @@ pub(super) struct Telltale {
 
 /// Evidence that a structure must have; there are a hundred to choose from.
 const ENOUGH: f64 = 30.0;
-/// And the kink, which is one question, asked of a smooth instrument.
+/// And what is asked by itself: the kink, of a smooth instrument; what the hottest and coldest moments left.
 const ENOUGH_OF_ONE: f64 = 10.0;
 /// And its size, in units of the noise of a sample.
 const MATTERS: f64 = 0.5;
@@ -63,7 +63,9 @@ impl Case<'_> {
         found.extend(scene.poses());
         found.extend(self.swing(known, noises));
         found.retain(|one| one.evidence > ENOUGH);
-        found.extend(scene.kinked().filter(|kink| kink.evidence > ENOUGH_OF_ONE));
+        let records = self.records().into_par_iter().filter_map(|record| scene.judged(&record, &freedom));
+        let questions = records.collect::<Vec<_>>().into_iter().chain(scene.kinked());
+        found.extend(questions.filter(|one| one.evidence > ENOUGH_OF_ONE));
         found.retain(|one| self.matters(one));
         found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         found
@@ -73,7 +75,9 @@ impl Case<'_> {
     pub fn strangest(&self, known: &Known, noises: &Noises) -> f64 {
         let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
         let scene = Scene { case: self, noise: noises.delta, left: &left, freedom: &freedom };
-        let all = scene.followed(&self.structures()).into_iter().chain(self.swing(known, noises));
+        let mut structures = self.structures();
+        structures.extend(self.records());
+        let all = scene.followed(&structures).into_iter().chain(self.swing(known, noises));
         all.filter(|one| self.matters(one)).map(|one| one.evidence).fold(f64::NEG_INFINITY, f64::max)
     }
 
