@@ -1,8 +1,10 @@
 //! Every effect that might be missing, at every shape worth trying.
 
-use super::case::{Case, Left};
+use super::case::Case;
 use super::evidence::{difference, joined};
 use super::instrument::Known;
+use super::left::Left;
+use super::sum_channel::{Response, response};
 use super::whitening::Columns;
 use crate::campaign::Campaign;
 use crate::expression::Expression;
@@ -21,7 +23,7 @@ pub(super) struct Candidate {
     pub amplitudes: Vec<usize>,
     /// What a unit of each amplitude (or the effect as it is) adds to the residual once compensated, µg.
     pub columns: Columns,
-    /// The same of the sum of the frequencies, mHz.
+    /// The same of the sum of the frequencies, mHz, where it is measured and the effect says what it does to it.
     pub sum: Option<Columns>,
 }
 
@@ -52,13 +54,15 @@ impl Candidate {
 
     fn new(case: &Case, still: &Left, effect: Chosen, values: Vec<f64>) -> Self {
         let amplitudes = amplitudes(effect.about);
+        let told = response(effect.about) == Response::Told;
         let (mut columns, mut sums): (Vec<Columns>, Vec<Columns>) = (Vec::new(), Vec::new());
         for only in 0..amplitudes.len().max(1) {
             let mut values = values.clone();
             amplitudes.iter().filter(|&&index| index != amplitudes[only]).for_each(|&index| values[index] = 0.0);
             let left = case.left(&Known::NONE.with(&effect, &values));
             columns.push(difference(&left.delta, &still.delta));
-            sums.extend(left.sum.as_ref().zip(still.sum.as_ref()).map(|(moved, still)| difference(moved, still)));
+            let both = left.sum.as_ref().zip(still.sum.as_ref()).filter(|_| told);
+            sums.extend(both.map(|(moved, still)| difference(moved, still)));
         }
         let sum = (!sums.is_empty()).then(|| joined(&sums));
         Self { effect, values, amplitudes, columns: joined(&columns), sum }

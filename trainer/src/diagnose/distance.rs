@@ -33,17 +33,21 @@ impl Foretold {
     /// Of `own`, one effect, beside what is known.
     pub fn new(case: &Case, known: &Known, own: &Known) -> Self {
         let (held, effect) = (case.held(known), &own.effects[0]);
-        let (with, without) = (case.left_beside(Some(&held), own), case.left_beside(Some(&held), &Known::NONE));
+        let (with, without) = (case.left_beside(&held, own), case.left_beside(&held, &Known::NONE));
         let sum = with.sum.as_ref().zip(without.sum.as_ref()).map(|(with, without)| difference(with, without));
         let course = Pair { delta: difference(&with.delta, &without.delta), sum };
-        let (delta, sum) = case.tangents(Some(&held), own);
+        let (delta, sum) = case.tangents(&held, own, &with);
         let near = Pair {
             delta: stacked(&course.delta, &delta),
             sum: course.sum.as_ref().zip(sum.as_ref()).map(|(course, sum)| stacked(course, sum)),
         };
         let far = Candidate::all(case, std::slice::from_ref(effect));
         let far = if far.len() > MOST_SHAPES { Vec::new() } else { far };
-        let far = far.into_iter().map(|candidate| Pair { delta: candidate.columns, sum: candidate.sum });
+        let far = far.into_iter().map(|Candidate { columns: delta, sum, .. }| {
+            let silent = || delta.iter().map(|run| run * 0.0).collect();
+            let sum = course.sum.as_ref().map(|_| sum.unwrap_or_else(silent));
+            Pair { delta, sum }
+        });
         let unsaid = match response(effect.about) {
             Response::Free(most) if course.sum.is_some() => {
                 let mhz_per_ug = case.instrument.scale_factor_hz_per_g(&case.layout) * 1e-3;

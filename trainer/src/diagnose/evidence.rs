@@ -11,16 +11,14 @@
 //! ```
 
 use super::layout::Layout;
-use super::whitening::{Columns, NoiseModel, Whitened};
+use super::whitening::{Columns, NoiseModel, Whitening};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// A residual and the instrument's freedom, under one noise.
-pub(super) struct Bench<'a> {
-    layout: &'a Layout<'a>,
-    /// The noise.
-    pub noise: NoiseModel,
+pub(super) struct Bench {
+    whitening: Whitening,
     freedom: Columns,
     residual: Columns,
     factor: Cholesky<f64, Dyn>,
@@ -41,64 +39,90 @@ pub(super) struct Score {
 /// Information below this share of a column's own is rounding.
 const ROUNDING: f64 = 1e-10;
 
-impl<'a> Bench<'a> {
+/// So many candidates are scored together: few enough for a processor's cache, enough to share the work.
+const TOGETHER: usize = 16;
+
+/// Several candidates' whitened columns, side by side.
+struct Together {
+    /// Where each candidate's stand.
+    places: Vec<Range<usize>>,
+    columns: Columns,
+    /// Zᵀc.
+    cross: DMatrix<f64>,
+    /// G⁻¹ Zᵀc.
+    solved: DMatrix<f64>,
+}
+
+impl Bench {
     /// `residual` and `freedom` under `noise`; `None` if the numbers are not finite.
-    pub fn new(layout: &'a Layout, noise: NoiseModel, residual: &Columns, freedom: &Columns) -> Option<Self> {
-        let Whitened { columns: freedom, .. } = noise.whiten(layout, freedom);
-        let Whitened { columns: residual, log_det } = noise.whiten(layout, residual);
+    pub fn new(layout: &Layout, noise: NoiseModel, residual: &Columns, freedom: &Columns) -> Option<Self> {
+        let whitening = noise.whitening(layout);
+        let (freedom, residual) = (whitening.of(freedom), whitening.of(residual));
         let mut normal = product(&freedom, &freedom);
         (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1.0);
         let right: DVector<f64> = product(&freedom, &residual).column(0).into();
         let squares = product(&residual, &residual)[(0, 0)];
         let factor = Cholesky::new(normal)?;
         let absorbed = factor.solve(&right);
-        let deviance = log_det + log_determinant(&factor) + squares - right.dot(&absorbed);
-        deviance.is_finite().then_some(Self { layout, noise, freedom, residual, factor, absorbed, deviance })
+        let deviance = whitening.log_det + log_determinant(&factor) + squares - right.dot(&absorbed);
+        deviance.is_finite().then_some(Self { whitening, freedom, residual, factor, absorbed, deviance })
     }
 
     /// The score of columns.
     pub fn score(&self, columns: &Columns) -> Score {
-        let columns = &self.noise.whiten(self.layout, columns).columns;
+        let columns = &self.whitening.of(columns);
         let cross = product(&self.freedom, columns);
         let normal = product(columns, columns) - cross.tr_mul(&self.factor.solve(&cross));
         let right = product(columns, &self.residual).column(0) - cross.tr_mul(&self.absorbed);
         Score { normal, right }
     }
 
-    /// The scores of many candidates: `widths` says how many columns each has.
-    pub fn scores(&self, columns: &Columns, widths: &[usize]) -> Vec<Score> {
-        let Whitened { columns, .. } = self.noise.whiten(self.layout, columns);
-        let cross = product(&self.freedom, &columns);
-        let solved = self.factor.solve(&cross);
-        let right = product(&columns, &self.residual).column(0) - cross.tr_mul(&self.absorbed);
-        let of = |places: Range<usize>| {
-            let (start, width) = (places.start, places.len());
-            let own: Columns = columns.iter().map(|run| run.columns(start, width).into_owned()).collect();
-            let kept = product(&own, &own) - cross.columns(start, width).tr_mul(&solved.columns(start, width));
-            Score { normal: kept, right: right.rows(start, width).into_owned() }
+    /// The scores of many candidates.
+    pub fn scores(&self, candidates: &[&Columns]) -> Vec<Score> {
+        let of = |some: &[&Columns]| {
+            let Together { places, columns, cross, solved } = self.together(some);
+            let right = product(&columns, &self.residual).column(0) - cross.tr_mul(&self.absorbed);
+            let normal = product(&columns, &columns) - cross.tr_mul(&solved);
+            let score = |place: Range<usize>| Score {
+                normal: normal.view((place.start, place.start), (place.len(), place.len())).into_owned(),
+                right: right.rows(place.start, place.len()).into_owned(),
+            };
+            places.into_iter().map(score).collect::<Vec<_>>()
         };
-        places(widths).collect::<Vec<_>>().into_par_iter().map(of).collect()
+        candidates.par_chunks(TOGETHER).flat_map_iter(of).collect()
     }
 
     /// Of each candidate's columns: RMS size, and the greatest share of an amplitude that the instrument leaves.
-    pub fn shares_left(&self, columns: &Columns, widths: &[usize]) -> Vec<(f64, f64)> {
-        let cells: f64 = columns.iter().map(|run| run.nrows() as f64).sum();
-        let white = self.noise.whiten(self.layout, columns).columns;
-        let cross = product(&self.freedom, &white);
-        let solved = self.factor.solve(&cross);
-        let one = |column: usize| {
-            let square = |all: &Columns| all.iter().map(|run| run.column(column).norm_squared()).sum::<f64>();
-            let (size, own) = ((square(columns) / cells).sqrt(), square(&white));
-            let left = own - cross.column(column).dot(&solved.column(column));
-            (size, if own > 0.0 { (left / own).max(0.0).sqrt() } else { 0.0 })
+    pub fn shares_left(&self, candidates: &[&Columns]) -> Vec<(f64, f64)> {
+        let cells: f64 = self.residual.iter().map(|run| run.nrows() as f64).sum();
+        let square =
+            |all: &Columns, column: usize| all.iter().map(|run| run.column(column).norm_squared()).sum::<f64>();
+        let of = |some: &[&Columns]| {
+            let Together { places, columns, cross, solved } = self.together(some);
+            let share = |column: usize| {
+                let own = square(&columns, column);
+                let left = own - cross.column(column).dot(&solved.column(column));
+                if own > 0.0 { (left / own).max(0.0).sqrt() } else { 0.0 }
+            };
+            let greatest = |(candidate, place): (&&Columns, Range<usize>)| {
+                let sizes = (0..width(candidate)).map(|column| (square(candidate, column) / cells).sqrt());
+                (sizes.fold(0.0, f64::max), place.map(share).fold(0.0, f64::max))
+            };
+            some.iter().zip(places).map(greatest).collect::<Vec<_>>()
         };
-        let best = |a: (f64, f64), b: (f64, f64)| (a.0.max(b.0), a.1.max(b.1));
-        places(widths).map(|places| places.map(one).fold((0.0, 0.0), best)).collect()
+        candidates.par_chunks(TOGETHER).flat_map_iter(of).collect()
+    }
+
+    fn together(&self, candidates: &[&Columns]) -> Together {
+        let columns = self.whitening.of(&joined(candidates.iter().copied()));
+        let cross = product(&self.freedom, &columns);
+        let solved = self.factor.solve(&cross);
+        Together { places: places(candidates), columns, cross, solved }
     }
 
     /// Columns less what the instrument's `freedom`, the one of this bench, makes of them, cell by cell.
     pub fn beyond(&self, columns: &Columns, freedom: &Columns) -> Columns {
-        let white = self.noise.whiten(self.layout, columns).columns;
+        let white = self.whitening.of(columns);
         let absorbed = self.factor.solve(&product(&self.freedom, &white));
         columns.iter().zip(freedom).map(|(columns, freedom)| columns - freedom * &absorbed).collect()
     }
@@ -151,13 +175,14 @@ impl Score {
     }
 }
 
-/// Where the columns of each candidate stand.
-fn places(widths: &[usize]) -> impl Iterator<Item = Range<usize>> {
-    widths.iter().scan(0, |next, width| {
+/// Where the columns of each candidate stand when all are side by side.
+fn places(candidates: &[&Columns]) -> Vec<Range<usize>> {
+    let place = |next: &mut usize, columns: &&Columns| {
         let start = *next;
-        *next += width;
+        *next += width(columns);
         Some(start..*next)
-    })
+    };
+    candidates.iter().scan(0, place).collect()
 }
 
 /// Σ AᵀB over the runs.
@@ -179,7 +204,7 @@ const LEAST_INFORMATION: f64 = 1e-3;
 
 /// The same freedom in fewer columns: directions that the data say nothing about are left out.
 pub(super) fn compressed(layout: &Layout, noise: &NoiseModel, freedom: &Columns) -> Columns {
-    let white = noise.whiten(layout, freedom).columns;
+    let white = noise.whitening(layout).of(freedom);
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(product(&white, &white));
     let kept: Vec<usize> = (0..eigenvalues.len()).filter(|&i| eigenvalues[i] > LEAST_INFORMATION).collect();
     let directions = eigenvectors.select_columns(&kept);

@@ -149,18 +149,22 @@ impl<const N: usize> Step<N> {
     }
 }
 
-/// Columns of one run with the noise's correlation taken out, and the logarithm of the determinant of its covariance.
-pub(super) fn whitened(
-    noise: &NoiseModel,
-    states: &[State],
-    run: &Stretch,
-    values: &DMatrix<f64>,
-) -> (DMatrix<f64>, f64) {
+/// One pass of the filter over a run, which serves every column.
+pub(super) trait Pass: Send + Sync {
+    /// Columns with the noise's correlation taken out.
+    fn whitened(&self, values: &DMatrix<f64>) -> DMatrix<f64>;
+
+    /// Logarithm of the determinant of the noise's covariance.
+    fn log_det(&self) -> f64;
+}
+
+/// The filter's pass over a run.
+pub(super) fn pass(noise: &NoiseModel, states: &[State], run: &Stretch) -> Box<dyn Pass> {
     match states.len() {
-        0..=4 => whitened_by(Filter::<4>::new(noise, states), run, values),
-        5..=6 => whitened_by(Filter::<6>::new(noise, states), run, values),
-        7..=8 => whitened_by(Filter::<8>::new(noise, states), run, values),
-        _ => whitened_by(Filter::<MOST_STATES>::new(noise, states), run, values),
+        0..=4 => Box::new(Steps::of(Filter::<4>::new(noise, states), run)),
+        5..=6 => Box::new(Steps::of(Filter::<6>::new(noise, states), run)),
+        7..=8 => Box::new(Steps::of(Filter::<8>::new(noise, states), run)),
+        _ => Box::new(Steps::of(Filter::<MOST_STATES>::new(noise, states), run)),
     }
 }
 
@@ -187,11 +191,24 @@ fn deviance_by<const N: usize>(filter: Filter<N>, run: &Stretch, values: &[f64])
     filter.steps(run).zip(values).map(one).sum()
 }
 
-fn whitened_by<const N: usize>(filter: Filter<N>, run: &Stretch, values: &DMatrix<f64>) -> (DMatrix<f64>, f64) {
-    let steps: Vec<Step<N>> = filter.steps(run).collect();
-    let log_det = steps.iter().map(|step| step.variance.ln()).sum();
-    let white = if values.ncols() == 1 { filtered::<N, 1> } else { filtered::<N, 4> };
-    (white(&steps, values), log_det)
+/// What the filter does at every cell of a run.
+struct Steps<const N: usize>(Vec<Step<N>>);
+
+impl<const N: usize> Steps<N> {
+    fn of(filter: Filter<N>, run: &Stretch) -> Self {
+        Self(filter.steps(run).collect())
+    }
+}
+
+impl<const N: usize> Pass for Steps<N> {
+    fn whitened(&self, values: &DMatrix<f64>) -> DMatrix<f64> {
+        let filtered = if values.ncols() == 1 { filtered::<N, 1> } else { filtered::<N, 4> };
+        filtered(&self.0, values)
+    }
+
+    fn log_det(&self) -> f64 {
+        self.0.iter().map(|step| step.variance.ln()).sum()
+    }
 }
 
 /// Filters so many columns at once.
@@ -220,6 +237,7 @@ fn filtered<const N: usize, const LANES: usize>(steps: &[Step<N>], values: &DMat
 
 #[cfg(test)]
 mod tests {
+    use super::super::gathered::Gathered;
     use super::super::layout::WANDER_TAUS_S;
     use super::*;
     use crate::campaign::Run;
@@ -279,14 +297,14 @@ mod tests {
             (Kind::Node, 25.0),
             (Kind::Mounting, 40.0),
             (Kind::Pose, 12.0),
-            (Kind::Fading(2), 7.0),
+            (Kind::Fading(SLOWEST), 7.0),
             (Kind::Beginning, 60.0),
             (Kind::Fading(1), 4.0),
             (Kind::Turning, 30.0),
         ];
         let states = kinds.map(|(kind, sigma)| State { kind, variance: sigma * sigma });
         let run = Run { name: String::new(), kind: String::new(), source: PathBuf::new(), rows: Vec::new() };
-        let stretch = Stretch { run: &run, cells: (0..CELLS).map(cell).collect() };
+        let stretch = Stretch { run: &run, cells: (0..CELLS).map(cell).collect(), gathered: Gathered::default() };
         let values: Vec<f64> = (0..CELLS).map(|k| (k * 37 % 17) as f64 * 9.0 - 60.0).collect();
         let column = DVector::from_vec(values.clone());
         // Every size of filter, full or not.
@@ -301,8 +319,9 @@ mod tests {
             let worked = factor.determinant().ln() + column.dot(&factor.solve(&column));
             let found = deviance(&noise, states, &stretch, &values);
             assert!((found - worked).abs() < 1e-8 * worked.abs(), "{count}: {found} {worked}");
-            let (white, log_det) = whitened(&noise, states, &stretch, &DMatrix::from_column_slice(CELLS, 1, &values));
-            assert!((white.norm_squared() + log_det - worked).abs() < 1e-8 * worked.abs(), "{count}");
+            let pass = pass(&noise, states, &stretch);
+            let white = pass.whitened(&DMatrix::from_column_slice(CELLS, 1, &values));
+            assert!((white.norm_squared() + pass.log_det() - worked).abs() < 1e-8 * worked.abs(), "{count}");
         }
     }
 }

@@ -38,8 +38,8 @@ impl Case<'_> {
     /// Predicts each run from all the others.
     pub fn held_out(&self, known: &Known, noises: &Noises) -> HeldOut {
         let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
-        let white_left = noises.delta.whiten(&self.layout, &left).columns;
-        let white_freedom = noises.delta.whiten(&self.layout, &freedom).columns;
+        let whitening = noises.delta.whitening(&self.layout);
+        let (white_left, white_freedom) = (whitening.of(&left), whitening.of(&freedom));
         let mut normal = product(&white_freedom, &white_freedom);
         (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1.0);
         let right = product(&white_freedom, &white_left);

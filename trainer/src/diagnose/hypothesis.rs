@@ -17,7 +17,7 @@ pub(super) fn fitted(case: &Case, known: &Known, noises: &Noises, effect: &Chose
     let benches = case.benches(&case.left(known), &case.adapting(known), noises)?;
     let screened = case.screen(&benches, known, &candidates).into_iter();
     let best = screened.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).filter(|best| best.evidence > ENOUGH)?;
-    let fitted = case.refit(Some(&case.held(known)), &best.alone(), &benches, STEPS);
+    let (fitted, _) = case.refit(&case.held(known), &best.alone(), &benches, STEPS);
     Some(fitted.coefficients.values.concat())
 }
 

@@ -1,8 +1,10 @@
 //! The instrument as it is modelled now, in cells: what it reads wrong, and what retraining could make of that.
 
-use super::layout::{Cell, Layout};
+use super::candidate::is_placed;
+use super::layout::{Cell, Layout, Stretch};
 use super::sum_channel::{Response, response};
 use super::whitening::Columns;
+use crate::campaign::Row;
 use crate::expression::Expression;
 use crate::fit::effects::{Chosen, Coefficients, Deed, deeds, mean_deed};
 use crate::model::Model;
@@ -80,6 +82,16 @@ impl Known {
         })
     }
 
+    /// Those that sit at a place, and the others.
+    fn by_place(&self) -> (Self, Self) {
+        let mut both = (Self::NONE, Self::NONE);
+        for one in self.each() {
+            let side = if is_placed(one.effects[0].about) { &mut both.0 } else { &mut both.1 };
+            *side = side.and(&one);
+        }
+        both
+    }
+
     /// Those whose deeds say what happens to the sum of the frequencies.
     pub fn told(&self) -> Self {
         let told = self.each().filter(|one| response(one.effects[0].about) == Response::Told);
@@ -117,25 +129,47 @@ impl Instrument {
 
     /// What the effects do in each cell.
     pub fn deeds(&self, layout: &Layout, known: &Known) -> Deeds {
-        let of = |stretch: &super::layout::Stretch| {
-            if known.effects.is_empty() {
-                return vec![Deed::default(); stretch.cells.len()];
+        let (placed, others) = known.by_place();
+        let of = |stretch: &Stretch| {
+            let course = |rows: &[Row], known: &Known| {
+                let some = !known.effects.is_empty();
+                some.then(|| deeds(rows, &known.effects, &known.coefficients, layout.max_gap_us)).flatten()
+            };
+            let mut all = match course(&stretch.run.rows, &others) {
+                Some(course) => stretch.cells.iter().map(|cell| mean_deed(&course[cell.rows.clone()])).collect(),
+                None => vec![Deed::default(); stretch.cells.len()],
+            };
+            if let Some(course) = course(&stretch.gathered.rows, &placed) {
+                for (&(cell, share), deed) in stretch.gathered.places.iter().zip(course) {
+                    all[cell] = all[cell].plus(&deed.times(share));
+                }
             }
-            let all = deeds(stretch.run, &known.effects, &known.coefficients, layout.max_gap_us);
-            let all = all.unwrap_or_else(|| vec![Deed::default(); stretch.run.rows.len()]);
-            stretch.cells.iter().map(|cell| mean_deed(&all[cell.rows.clone()])).collect()
+            all
         };
         layout.stretches.par_iter().map(of).collect()
     }
 
-    /// Reading minus reference in each cell, µg, under the sum of these deeds.
-    pub fn residual_ug(&self, layout: &Layout, deeds: &[&Deeds]) -> Columns {
-        let of = |(index, stretch): (usize, &super::layout::Stretch)| {
-            let values = stretch.cells.iter().enumerate().map(|(cell, place)| {
-                let sum = deeds.iter().fold(Deed::default(), |sum, deeds| sum.plus(&deeds[index][cell]));
-                self.cell_residual_ug(layout, place, &sum)
-            });
+    /// Reading minus reference in each cell, µg, under these deeds.
+    pub fn residual_ug(&self, layout: &Layout, deeds: &Deeds) -> Columns {
+        let of = |(stretch, deeds): (&Stretch, &Vec<Deed>)| {
+            let values = stretch.cells.iter().zip(deeds).map(|(cell, deed)| self.cell_residual_ug(layout, cell, deed));
             DMatrix::from_iterator(stretch.cells.len(), 1, values)
+        };
+        layout.stretches.par_iter().zip(deeds).map(of).collect()
+    }
+
+    /// The same under `own` deeds too, beside `held` ones that leave `before`.
+    pub fn residual_beside_ug(&self, layout: &Layout, held: &Deeds, before: &Columns, own: &Deeds) -> Columns {
+        let of = |(run, stretch): (usize, &Stretch)| {
+            let value = |(index, cell): (usize, &Cell)| {
+                let deed = &own[run][index];
+                // What only adds to the output asks nothing of the network.
+                if deed.moves_nothing() {
+                    return before[run][(index, 0)] - deed.bias_g * UG;
+                }
+                self.cell_residual_ug(layout, cell, &held[run][index].plus(deed))
+            };
+            DMatrix::from_iterator(stretch.cells.len(), 1, stretch.cells.iter().enumerate().map(value))
         };
         layout.stretches.par_iter().enumerate().map(of).collect()
     }
@@ -160,7 +194,7 @@ impl Instrument {
             values.extend(self.tangents(cell).map(|value| value * departure_ug * FREEDOM));
             values
         };
-        let of = |stretch: &super::layout::Stretch| {
+        let of = |stretch: &Stretch| {
             let values: Vec<Vec<f64>> = stretch.cells.iter().map(column).collect();
             let width = values.first().map_or(0, Vec::len);
             DMatrix::from_row_iterator(values.len(), width, values.into_iter().flatten())
@@ -171,7 +205,7 @@ impl Instrument {
     /// How the reading of a smooth instrument can change, µg per expected change: polynomials alone.
     pub fn smooth(&self, layout: &Layout) -> Columns {
         let departure_ug = f64::from(self.model.scaling.output_g).abs() * UG;
-        let of = |stretch: &super::layout::Stretch| {
+        let of = |stretch: &Stretch| {
             let rows: Vec<Vec<f64>> = stretch.cells.iter().map(|cell| polynomials(cell.x, cell.t)).collect();
             let width = rows.first().map_or(0, Vec::len);
             DMatrix::from_row_iterator(rows.len(), width, rows.into_iter().flatten().map(|value| value * departure_ug))
@@ -181,8 +215,8 @@ impl Instrument {
 
     /// Scatter of the static reading from sample to sample, µg.
     pub fn sample_ug(&self, layout: &Layout) -> Option<f64> {
-        let residuals = |stretch: &super::layout::Stretch| -> Vec<f64> {
-            let of = |row: &crate::campaign::Row| {
+        let residuals = |stretch: &Stretch| -> Vec<f64> {
+            let of = |row: &Row| {
                 let [x, t] = layout.scale.inputs(&row.sample);
                 (self.reading_g(x, t) - row.reference_g) * UG
             };

@@ -7,6 +7,7 @@ use super::case::{Case, Noises};
 use super::evidence::{Score, compressed};
 use super::instrument::{Instrument, Known};
 use super::layout::Layout;
+use super::left::Held;
 use super::noise_search::first_guess;
 use super::observable::{Screening, unobservable};
 use super::search::{Contender, Found, freedom_of};
@@ -50,7 +51,7 @@ pub(super) fn judge(model: &Model, campaign: &Campaign, progress: &dyn Progress)
         // What retraining would make of the effects that the model has is not missing.
         let noises = case.noises(&case.left(&start), &case.adapting(&start), None);
         let benches = case.benches(&case.left(&start), &case.stiff(&start), &noises).ok_or(DiagnoseError::NoNoise)?;
-        start = case.refit(None, &start, &benches, LAST_STEPS);
+        (start, _) = case.refit(&case.bare, &start, &benches, LAST_STEPS);
         case.layout.remember(&start);
     }
     let shown = with_channels(campaign);
@@ -98,7 +99,8 @@ pub(super) fn case<'a>(model: &Model, campaign: &'a Campaign) -> Result<Case<'a>
     let ug_per_c = instrument.ug_per_c(&layout);
     let freedom = compressed(&layout, &first_guess(sample_ug, ug_per_c), &instrument.freedom(&layout));
     let sum = SumChannel::new(&layout);
-    Ok(Case { layout, instrument, freedom, sum, sample_ug, ug_per_c })
+    let bare = Held::new(&layout, &instrument, sum.as_ref(), &Known::NONE);
+    Ok(Case { layout, instrument, freedom, sum, bare, sample_ug, ug_per_c })
 }
 
 /// From integers to the model's inputs.
@@ -170,7 +172,7 @@ fn search(
         let known = found.known.with(&next.winner.effect, &next.winner.values);
         case.layout.remember(&known);
         let benches = case.benches(&case.left(&known), &case.stiff(&known), &noises).ok_or(DiagnoseError::NoNoise)?;
-        found.known = case.refit(None, &known, &benches, LAST_STEPS);
+        (found.known, _) = case.refit(&case.bare, &known, &benches, LAST_STEPS);
         found.noises = noises;
         case.layout.remember(&found.known);
         found.steps.push(next);
@@ -186,8 +188,8 @@ fn prune(case: &mut Case, start: &Known, found: &mut Findings) -> Option<Vec<Str
     while found.steps.len() > 1 {
         let deviance = |known: &Known| {
             let benches = case.benches(&case.left(known), &case.stiff(known), &found.noises)?;
-            let known = case.refit(None, known, &benches, LAST_STEPS);
-            let value = case.benches(&case.left(&known), &case.stiff(&known), &found.noises)?.deviance();
+            let (known, left) = case.refit(&case.bare, known, &benches, LAST_STEPS);
+            let value = case.benches(&left, &case.stiff(&known), &found.noises)?.deviance();
             Some((value, known))
         };
         let (with, _) = deviance(&found.known)?;
@@ -330,8 +332,9 @@ impl Case<'_> {
     /// Standard uncertainties of all coefficients, effect by effect.
     fn sigmas(&self, known: &Known, noises: &Noises) -> Vec<Vec<f64>> {
         let parameters = known.coefficients.to_parameters(&known.effects);
-        let covariance = self.benches(&self.left(known), &self.stiff(known), noises).and_then(|benches| {
-            let (delta, sum) = self.tangents(None, known);
+        let left = self.left(known);
+        let covariance = self.benches(&left, &self.stiff(known), noises).and_then(|benches| {
+            let (delta, sum) = self.tangents(&self.bare, known, &left);
             let normal = benches.normal(&delta, sum.as_ref());
             // Where the data say nothing of a parameter, its bounds do.
             Score { right: DVector::zeros(normal.nrows()), normal }.covariance()

@@ -1,5 +1,6 @@
 //! The campaign as a diagnosis sees it: cells of neighbouring samples, run by run, with what noise may depend on.
 
+use super::gathered::Gathered;
 use super::instrument::Known;
 use crate::campaign::{Campaign, Run};
 use crate::fit::dataset::{InputScale, mean};
@@ -50,6 +51,8 @@ pub(super) struct Stretch<'a> {
     pub run: &'a Run,
     /// Its cells in order.
     pub cells: Vec<Cell>,
+    /// Its rows, gathered within the cells.
+    pub gathered: Gathered,
 }
 
 /// All runs in cells.
@@ -65,6 +68,13 @@ pub(super) struct Layout<'a> {
     cross: Option<usize>,
 }
 
+impl<'a> Stretch<'a> {
+    fn new(run: &'a Run, rows: Vec<Range<usize>>, scale: &InputScale, cross: Option<usize>) -> Self {
+        let gathered = Gathered::new(&run.rows, rows.iter());
+        Self { run, cells: cells_of(run, rows, scale, cross), gathered }
+    }
+}
+
 /// References closer than this are the same position, g.
 const SAME_POSITION_G: f64 = 1e-3;
 /// The channel that says how much acceleration lies across the input axis.
@@ -75,17 +85,14 @@ impl<'a> Layout<'a> {
     pub fn new(campaign: &'a Campaign, scale: InputScale, max_gap_us: u32) -> Self {
         let cross = campaign.channels.iter().position(|channel| channel == CROSS_CHANNEL);
         let neighbours = Neighbours::of(&campaign.runs, &scale);
-        let stretch = |run: &'a Run| Stretch { run, cells: cells_of(run, neighbours.cells(run), &scale, cross) };
+        let stretch = |run: &'a Run| Stretch::new(run, neighbours.cells(run), &scale, cross);
         Self { stretches: campaign.runs.iter().map(stretch).collect(), scale, max_gap_us, cross }
     }
 
     /// The same with a cell for every sample.
     pub fn by_sample(&self) -> Self {
         let rows = |run: &Run| (0..run.rows.len()).map(|row| row..row + 1).collect();
-        let stretch = |one: &Stretch<'a>| Stretch {
-            run: one.run,
-            cells: cells_of(one.run, rows(one.run), &self.scale, self.cross),
-        };
+        let stretch = |one: &Stretch<'a>| Stretch::new(one.run, rows(one.run), &self.scale, self.cross);
         Self { stretches: self.stretches.iter().map(stretch).collect(), ..*self }
     }
 

@@ -3,7 +3,6 @@
 use super::answer::Unobservable;
 use super::candidate::Candidate;
 use super::case::{Case, Noises};
-use super::evidence::{joined, width};
 use super::instrument::Known;
 use crate::campaign::Campaign;
 use firmware_core::effect::{self, About};
@@ -25,9 +24,8 @@ impl Screening {
     /// Sorts the candidates; `None` if the noise makes no sense.
     pub fn new(case: &Case, known: &Known, candidates: Vec<Candidate>, noises: &Noises) -> Option<Self> {
         let benches = case.benches(&case.left(known), &case.adapting(known), &noises.small())?;
-        let widths: Vec<usize> = candidates.iter().map(|candidate| width(&candidate.columns)).collect();
-        let columns = joined(candidates.iter().map(|candidate| &candidate.columns));
-        let left = benches.delta.shares_left(&columns, &widths);
+        let columns: Vec<_> = candidates.iter().map(|candidate| &candidate.columns).collect();
+        let left = benches.delta.shares_left(&columns);
         let (mut visible, mut seen, mut shares) = (Vec::new(), Vec::new(), Vec::new());
         for (candidate, (own, share)) in candidates.into_iter().zip(left) {
             let about = candidate.effect.about;

@@ -82,14 +82,14 @@ impl Case<'_> {
         let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
         let adapted = Bench::new(&self.layout, noise, &left, &freedom)?.adapted(&left, &freedom);
         let fine = self.layout.by_sample();
-        let mut values: Columns = self.instrument.residual_ug(&fine, &[&self.instrument.deeds(&fine, known)]);
+        let mut values: Columns = self.instrument.residual_ug(&fine, &self.instrument.deeds(&fine, known));
         for (run, stretch) in self.layout.stretches.iter().enumerate() {
             for (index, cell) in stretch.cells.iter().enumerate() {
                 let change = adapted[run][(index, 0)] - left[run][(index, 0)];
                 cell.rows.clone().for_each(|row| values[run][(row, 0)] += change);
             }
         }
-        let white = noise.whiten(&fine, &values).columns;
+        let white = noise.whitening(&fine).of(&values);
         let course = |(cells, values): (&Vec<Cell>, &[f64])| Course::new(cells, values);
         let pairs = fine.stretches.iter().map(|stretch| &stretch.cells).zip(white.iter().map(DMatrix::as_slice));
         Some(pairs.filter_map(course).collect())

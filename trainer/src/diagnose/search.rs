@@ -1,9 +1,10 @@
 //! Which effects are missing: forward selection, each step judged with everything else free to adapt.
 
 use super::candidate::{Candidate, is_placed, name_of};
-use super::case::{Benches, Case, Freedom, Held, Left, Noises};
-use super::evidence::{Bench, Score, difference, joined, width};
+use super::case::{Benches, Case, Freedom, Noises};
+use super::evidence::{Bench, Score, difference};
 use super::instrument::Known;
+use super::left::{Held, Left};
 use super::sum_channel::{Response, response};
 use super::whitening::Columns;
 use crate::fit::effects::Chosen;
@@ -200,7 +201,7 @@ impl Case<'_> {
         screened.truncate(FORESEEN);
         let before = self.held_out(known, &small);
         let tried = screened.into_par_iter().map(|contender| {
-            let own = self.refit(Some(&held), &contender.alone(), &benches, TURNS * REFINEMENTS);
+            let (own, _) = self.refit(&held, &contender.alone(), &benches, TURNS * REFINEMENTS);
             let values = own.coefficients.values.concat();
             let after = self.held_out(&known.with(&contender.effect, &values), &small);
             let ratio = after.structure_ug() / before.structure_ug();
@@ -250,9 +251,9 @@ impl Case<'_> {
         let mut case = self.remembering(&known.and(&own));
         for _ in 0..TURNS {
             let benches = case.benches(&scene.left, &scene.freedom, &noises)?;
-            own = case.refit(Some(&scene.held), &own, &benches, REFINEMENTS);
-            let mut freedom = case.widened(&scene.freedom, &scene.held, &own);
-            let mut left = case.left_beside(Some(&scene.held), &own);
+            let mut left;
+            (own, left) = case.refit(&scene.held, &own, &benches, REFINEMENTS);
+            let mut freedom = case.widened(&scene.freedom, &scene.held, &own, &left);
             if !told {
                 // The sum is as it was; its noise is known.
                 (left.sum, freedom.sum) = (None, None);
@@ -263,8 +264,7 @@ impl Case<'_> {
         case.layout.remember(&known.and(&own));
         // The noise was fitted with the parameters free: they settle under what it has become.
         let benches = case.benches(&scene.left, &scene.freedom, &noises)?;
-        own = case.refit(Some(&scene.held), &own, &benches, REFINEMENTS);
-        let left = case.left_beside(Some(&scene.held), &own);
+        let (own, left) = case.refit(&scene.held, &own, &benches, REFINEMENTS);
         if told {
             // Difference and sum were free to ask for different sizes: what one size leaves is noise.
             noises = case.noises(&left, &scene.freedom, Some(&noises));
@@ -287,8 +287,7 @@ impl Case<'_> {
     fn freed(&self, scene: &Scene, left: &Left, own: &Known, noises: &Noises) -> Option<(Left, Noises)> {
         let Response::Free(most) = response(own.effects.first()?.about) else { return None };
         let sum = left.sum.as_ref()?;
-        let before = self.left_beside(Some(&scene.held), &Known::NONE).delta;
-        let bias = difference(&left.delta, &before);
+        let bias = difference(&left.delta, &scene.left.delta);
         let bound = most * self.mhz_per_ug();
         let (mut noises, mut freed) = (*noises, left.clone());
         for _ in 0..TURNS {
@@ -304,23 +303,16 @@ impl Case<'_> {
 
     /// The best shape of every effect on the grid, and the best place at every width.
     pub fn screen(&self, benches: &Benches, known: &Known, candidates: &[Candidate]) -> Vec<Contender> {
-        let scores = |columns: Vec<&Columns>, bench: &Bench| {
-            let widths: Vec<usize> = columns.iter().map(|columns| width(columns)).collect();
-            bench.scores(&joined(columns), &widths)
-        };
-        let delta = scores(candidates.iter().map(|candidate| &candidate.columns).collect(), &benches.delta);
-        let sum = benches
-            .sum
-            .as_ref()
-            .map(|bench| scores(candidates.iter().filter_map(|candidate| candidate.sum.as_ref()).collect(), bench));
+        let is_known =
+            |candidate: &&Candidate| known.effects.iter().any(|one| name_of(one) == name_of(&candidate.effect));
+        let candidates: Vec<&Candidate> = candidates.iter().filter(|candidate| !is_known(candidate)).collect();
+        let columns: Vec<&Columns> = candidates.iter().map(|candidate| &candidate.columns).collect();
+        let sums: Vec<&Columns> = candidates.iter().filter_map(|candidate| candidate.sum.as_ref()).collect();
+        let mut of_sums = benches.sum.iter().flat_map(|bench| bench.scores(&sums));
         let mut best: Vec<Contender> = Vec::new();
-        for (index, candidate) in candidates.iter().enumerate() {
-            if known.effects.iter().any(|effect| name_of(effect) == name_of(&candidate.effect)) {
-                continue;
-            }
-            let mut score = delta[index].clone();
-            if let Some(sum) = &sum {
-                score = score.tied(&sum[index]);
+        for (candidate, mut score) in candidates.into_iter().zip(benches.delta.scores(&columns)) {
+            if candidate.sum.is_some() {
+                score = of_sums.next().iter().fold(score, Score::tied);
             }
             let contender = self.judged(candidate, &score);
             match best.iter_mut().find(|other| other.is_same_start(&contender)) {

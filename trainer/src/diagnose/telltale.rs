@@ -15,7 +15,7 @@
 
 use super::case::{Case, Noises, generous};
 use super::dependence::TEMPERATURE;
-use super::evidence::{Bench, Score, joined, stacked, width};
+use super::evidence::{Bench, stacked, width};
 use super::instrument::Known;
 use super::noise_search::noise;
 use super::suspect::Suspect;
@@ -50,20 +50,21 @@ const TURNS: usize = 2;
 const SCATTERS: [f64; 9] = [0.0, 0.03, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4];
 /// A network that was trained on runs with an offset each follows their mean by this share of its uncertainty.
 const BENT: f64 = 0.5;
+
 impl Case<'_> {
     /// Everything that gives away something missing beside these effects, the surest first.
     pub fn telltales(&self, known: &Known, noises: &Noises, channels: &[String]) -> Vec<Telltale> {
-        let left = self.left(known).delta;
-        let freedom = self.adapting(known).delta;
-        let scene = Scene { case: self, noise: noises.delta, left: &left, freedom: &freedom };
+        let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
+        let scene = Scene { case: self, noise: noises.delta, left: &left };
+        let Some(instrument) = scene.free(&freedom) else { return Vec::new() };
         let mut suspects = self.structures();
         let other = self.followed(channels).into_iter().filter(|(name, _)| name != TEMPERATURE);
         suspects.extend(other.map(|(name, columns)| Suspect { depends_on: vec![name], period_s: None, columns }));
-        let mut found = scene.followed(&suspects);
-        found.extend(scene.poses());
+        let mut found = scene.followed(&suspects, &instrument);
+        found.extend(scene.poses(&instrument));
         found.extend(self.swing(known, noises));
         found.retain(|one| one.evidence > ENOUGH);
-        let records = self.records().into_par_iter().filter_map(|record| scene.judged(&record, &freedom));
+        let records = self.records().into_par_iter().filter_map(|record| scene.judged(&record, &instrument));
         let questions = records.collect::<Vec<_>>().into_iter().chain(scene.kinked());
         found.extend(questions.filter(|one| one.evidence > ENOUGH_OF_ONE));
         found.retain(|one| self.matters(one));
@@ -74,10 +75,11 @@ impl Case<'_> {
     /// Most evidence of a structure of a size that matters, which no known effect has, where these effects are at work.
     pub fn strangest(&self, known: &Known, noises: &Noises) -> f64 {
         let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
-        let scene = Scene { case: self, noise: noises.delta, left: &left, freedom: &freedom };
+        let scene = Scene { case: self, noise: noises.delta, left: &left };
+        let Some(instrument) = scene.free(&freedom) else { return f64::NEG_INFINITY };
         let mut structures = self.structures();
         structures.extend(self.records());
-        let all = scene.followed(&structures).into_iter().chain(self.swing(known, noises));
+        let all = scene.followed(&structures, &instrument).into_iter().chain(self.swing(known, noises));
         all.filter(|one| self.matters(one)).map(|one| one.evidence).fold(f64::NEG_INFINITY, f64::max)
     }
 
@@ -91,41 +93,51 @@ struct Scene<'a> {
     case: &'a Case<'a>,
     noise: NoiseModel,
     left: &'a Columns,
-    freedom: &'a Columns,
+}
+
+/// What may absorb a structure, and how likely that makes what was measured where there is none.
+struct Free<'a> {
+    columns: &'a Columns,
+    deviance: f64,
 }
 
 impl Scene<'_> {
-    fn bench(&self, noise: NoiseModel, left: &Columns, freedom: &Columns) -> Option<Bench<'_>> {
+    fn bench(&self, noise: NoiseModel, left: &Columns, freedom: &Columns) -> Option<Bench> {
         Bench::new(&self.case.layout, noise, left, freedom)
     }
 
+    fn free<'f>(&self, columns: &'f Columns) -> Option<Free<'f>> {
+        let without = noise(&self.case.layout, self.left, columns, self.noise, false);
+        Some(Free { columns, deviance: self.bench(without, self.left, columns)?.deviance })
+    }
+
     /// The most striking suspects, judged in full.
-    fn followed(&self, suspects: &[Suspect]) -> Vec<Telltale> {
+    fn followed(&self, suspects: &[Suspect], free: &Free) -> Vec<Telltale> {
         let mut finalists: Vec<&Suspect> = Vec::new();
         for noise in [self.noise, self.noise.small()] {
-            for suspect in self.screened(noise, suspects) {
+            for suspect in self.screened(noise, suspects, free) {
                 if !finalists.iter().any(|other| std::ptr::eq(*other, suspect)) {
                     finalists.push(suspect);
                 }
             }
         }
-        finalists.into_par_iter().filter_map(|suspect| self.judged(suspect, self.freedom)).collect()
+        finalists.into_par_iter().filter_map(|suspect| self.judged(suspect, free)).collect()
     }
 
-    fn screened<'s>(&self, noise: NoiseModel, suspects: &'s [Suspect]) -> Vec<&'s Suspect> {
-        let Some(bench) = self.bench(noise, self.left, self.freedom) else { return Vec::new() };
-        let widths: Vec<usize> = suspects.iter().map(|suspect| width(&suspect.columns)).collect();
-        let columns = joined(suspects.iter().map(|suspect| &suspect.columns));
-        let price = |width: usize| self.case.price() * width as f64;
-        let gains = bench.scores(&columns, &widths).into_iter().map(|score: Score| score.gain());
+    fn screened<'s>(&self, noise: NoiseModel, suspects: &'s [Suspect], free: &Free) -> Vec<&'s Suspect> {
+        let Some(bench) = self.bench(noise, self.left, free.columns) else { return Vec::new() };
+        let columns: Vec<&Columns> = suspects.iter().map(|suspect| &suspect.columns).collect();
+        let price = |suspect: &Suspect| self.case.price() * width(&suspect.columns) as f64;
+        let scores = bench.scores(&columns).into_iter().zip(suspects);
         let mut order: Vec<(f64, &Suspect)> =
-            gains.zip(&widths).zip(suspects).map(|((gain, width), suspect)| (gain - price(*width), suspect)).collect();
+            scores.map(|(score, suspect)| (score.gain() - price(suspect), suspect)).collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0));
         order.into_iter().take(FINALISTS).map(|(_, suspect)| suspect).collect()
     }
 
     /// Fits amplitudes and noise in turn, where an instrument of this freedom may absorb what it can.
-    fn judged(&self, suspect: &Suspect, freedom: &Columns) -> Option<Telltale> {
+    fn judged(&self, suspect: &Suspect, free: &Free) -> Option<Telltale> {
+        let freedom = free.columns;
         let widened = stacked(freedom, &generous(&suspect.columns, self.case.sample_ug));
         let (mut with, mut fitted, mut size_ug) = (self.noise, self.left.clone(), 0.0);
         for _ in 0..TURNS {
@@ -137,8 +149,7 @@ impl Scene<'_> {
             fitted = self.left.iter().zip(&course).map(|(left, course)| left + course).collect();
             with = noise(&self.case.layout, &fitted, &widened, with, false);
         }
-        let without = noise(&self.case.layout, self.left, freedom, self.noise, false);
-        let gain = self.bench(without, self.left, freedom)?.deviance - self.bench(with, &fitted, freedom)?.deviance;
+        let gain = free.deviance - self.bench(with, &fitted, freedom)?.deviance;
         let evidence = gain - self.case.price() * width(&suspect.columns) as f64;
         Some(Telltale { depends_on: suspect.depends_on.clone(), period_s: suspect.period_s, evidence, size_ug })
     }
@@ -149,7 +160,7 @@ impl Scene<'_> {
         // Only a smooth instrument may absorb it, not whatever a network may be bent to.
         let smooth = self.case.instrument.smooth(&self.case.layout);
         let is_kink = |one: &Telltale| one.evidence > ENOUGH_OF_ONE && one.size_ug > self.bent_ug();
-        let telltale = self.judged(&kink, &smooth).filter(is_kink)?;
+        let telltale = self.judged(&kink, &self.free(&smooth)?).filter(is_kink)?;
         let deviances = |scatter: &f64| {
             let levels: Columns = levels.iter().map(|run| run * (scatter * self.case.sample_ug)).collect();
             let bench = self.bench(self.noise, self.left, &stacked(&smooth, &levels))?;
@@ -168,12 +179,12 @@ impl Scene<'_> {
     }
 
     /// Whether the noise is less likely without a scatter that every position has of its own.
-    fn poses(&self) -> Option<Telltale> {
+    fn poses(&self, free: &Free) -> Option<Telltale> {
         let mut start = self.noise;
         start.parts[POSE] = 0.0;
-        let without = noise(&self.case.layout, self.left, self.freedom, start, false);
-        let with = self.bench(self.noise, self.left, self.freedom)?.deviance;
-        let evidence = self.bench(without, self.left, self.freedom)?.deviance - with - self.case.price();
+        let without = noise(&self.case.layout, self.left, free.columns, start, false);
+        let with = self.bench(self.noise, self.left, free.columns)?.deviance;
+        let evidence = self.bench(without, self.left, free.columns)?.deviance - with - self.case.price();
         let depends_on = vec!["reference_g".to_owned(), "position".to_owned()];
         Some(Telltale { depends_on, period_s: None, evidence, size_ug: self.noise.parts[POSE] })
     }

@@ -6,8 +6,8 @@
 //! that. The noise is a sum of states that a Kalman filter tracks; its innovations are white, and every column
 //! that goes through the same filter can be compared by plain least squares.
 
-use super::filter::{self, Kind, State};
-use super::layout::{Layout, Stretch};
+use super::filter::{self, Kind, Pass, State};
+use super::layout::{Layout, SLOWEST, Stretch};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -48,25 +48,32 @@ pub(super) const POSE: usize = 8;
 /// Wander within hours, per g across the input axis: at one level a rig stands in two ways, and nobody wrote down in which.
 pub(super) const TURN: usize = 9;
 
-/// Columns whose noise is white with variance one.
-pub(super) struct Whitened {
-    /// The columns.
-    pub columns: Columns,
+/// A noise on its way through all runs, ready for any column.
+pub(super) struct Whitening {
+    passes: Vec<Box<dyn Pass>>,
     /// Logarithm of the determinant of the noise's covariance.
     pub log_det: f64,
+}
+
+impl Whitening {
+    /// The columns with the noise's correlation taken out: white with variance one.
+    pub fn of(&self, columns: &Columns) -> Columns {
+        let pairs: Vec<_> = self.passes.iter().zip(columns).collect();
+        pairs.into_par_iter().map(|(pass, values)| pass.whitened(values)).collect()
+    }
 }
 
 /// A small random walk adds this share of the sample noise in a second.
 const SMALL_WALK: f64 = 0.01;
 
 impl NoiseModel {
-    /// Takes the noise's correlation out of the columns.
-    pub fn whiten(&self, layout: &Layout, columns: &Columns) -> Whitened {
+    /// What takes the noise's correlation out of columns.
+    pub fn whitening(&self, layout: &Layout) -> Whitening {
         let states = self.states();
-        let pairs: Vec<_> = layout.stretches.iter().zip(columns).collect();
-        let runs = pairs.into_par_iter().map(|(stretch, values)| filter::whitened(self, &states, stretch, values));
-        let (columns, log_dets): (Vec<_>, Vec<f64>) = runs.unzip();
-        Whitened { columns, log_det: log_dets.iter().sum() }
+        let pass = |stretch: &Stretch| filter::pass(self, &states, stretch);
+        let passes: Vec<_> = layout.stretches.par_iter().map(pass).collect();
+        let log_det = passes.iter().map(|pass| pass.log_det()).sum();
+        Whitening { passes, log_det }
     }
 
     /// Minus twice the logarithm of the likelihood of one column, but for a constant.
@@ -106,7 +113,7 @@ impl NoiseModel {
             (Kind::Node, node),
             (Kind::Fading(0), flicker),
             (Kind::Fading(1), flicker),
-            (Kind::Fading(2), wander),
+            (Kind::Fading(SLOWEST), wander),
             (Kind::Walk, walk * 60.0),
             (Kind::Beginning, beginning),
             (Kind::Pose, pose),

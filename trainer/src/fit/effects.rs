@@ -8,7 +8,7 @@ use super::dataset::{InputScale, mean};
 use super::neighbours::Neighbours;
 use super::network::{Group, Rows, Tangent, ValueRow};
 use super::polynomial::Polynomial;
-use crate::campaign::Run;
+use crate::campaign::{Row, Run};
 use crate::expression::Expression;
 use crate::noise::Components;
 use firmware_core::effect::{About, Parameter, Role};
@@ -81,7 +81,7 @@ impl Chosen {
     pub fn course_g(&self, run: &Run, max_gap_us: u32) -> Vec<f64> {
         let value = |parameter: &Parameter| if parameter.role == Role::Amplitude { 1.0 } else { parameter.start };
         let values = vec![self.about.parameters.iter().map(value).collect()];
-        let deeds = deeds(run, std::slice::from_ref(self), &Coefficients { values }, max_gap_us);
+        let deeds = deeds(&run.rows, std::slice::from_ref(self), &Coefficients { values }, max_gap_us);
         deeds.unwrap_or_default().iter().map(|deed| deed.bias_g).collect()
     }
 }
@@ -138,16 +138,35 @@ impl Deed {
             bias_g: self.bias_g + other.bias_g,
         }
     }
+
+    /// Whether the inputs stay as they are.
+    pub(crate) fn moves_nothing(&self) -> bool {
+        self.temperature_c == 0.0 && self.delta_f_hz == 0.0
+    }
+
+    /// So much of it.
+    pub(crate) fn times(&self, share: f64) -> Self {
+        Self {
+            temperature_c: self.temperature_c * share,
+            delta_f_hz: self.delta_f_hz * share,
+            bias_g: self.bias_g * share,
+        }
+    }
 }
 
-/// Runs the effects over a run, sample by sample; `None` if the core refuses the coefficients.
-pub(crate) fn deeds(run: &Run, effects: &[Chosen], coefficients: &Coefficients, max_gap_us: u32) -> Option<Vec<Deed>> {
+/// Runs the effects over a run, row by row; `None` if the core refuses the coefficients.
+pub(crate) fn deeds(
+    rows: &[Row],
+    effects: &[Chosen],
+    coefficients: &Coefficients,
+    max_gap_us: u32,
+) -> Option<Vec<Deed>> {
     let mut terms = Terms::<f64>::new(max_gap_us);
     for (effect, values) in effects.iter().zip(&coefficients.values) {
         let program = effect.expression.as_ref().map_or(&[][..], |expression| expression.code());
         terms.push(effect.about.id, effect.channel, usize::MAX, values.iter().copied(), program).ok()?;
     }
-    let deed = |row: &crate::campaign::Row| {
+    let deed = |row: &Row| {
         let now = Observation::<f64>::new(&row.sample, &FROM_ZERO);
         terms.advance(&row.sample, row.reference_g);
         let disturbance = terms.disturbance(&now, row.reference_g);
@@ -157,7 +176,7 @@ pub(crate) fn deeds(run: &Run, effects: &[Chosen], coefficients: &Coefficients, 
             bias_g: terms.bias_g(&now, row.reference_g),
         }
     };
-    Some(run.rows.iter().map(deed).collect())
+    Some(rows.iter().map(deed).collect())
 }
 
 /// Effects look at absolute quantities only, so the zeros don't matter here.
@@ -234,7 +253,7 @@ impl<'a> MovedRows<'a> {
     fn place(&self, parameters: &[f64], mut put: impl FnMut(usize, usize, [f64; 3])) {
         let coefficients = Coefficients::from_parameters(self.effects, parameters);
         for (group, (run, cells)) in self.runs.iter().enumerate() {
-            let Some(deeds) = deeds(run, self.effects, &coefficients, self.max_gap_us) else { continue };
+            let Some(deeds) = deeds(&run.rows, self.effects, &coefficients, self.max_gap_us) else { continue };
             for (index, cell) in cells.iter().enumerate() {
                 put(group, index, self.placed(cell, &mean_deed(&deeds[cell.rows.clone()])));
             }
@@ -263,12 +282,8 @@ fn weigh(run: usize, cell: &Still, noise: &Components) -> ValueRow {
 }
 
 pub(crate) fn mean_deed(deeds: &[Deed]) -> Deed {
-    let count = deeds.len() as f64;
-    deeds.iter().fold(Deed::default(), |sum, deed| Deed {
-        temperature_c: sum.temperature_c + deed.temperature_c / count,
-        delta_f_hz: sum.delta_f_hz + deed.delta_f_hz / count,
-        bias_g: sum.bias_g + deed.bias_g / count,
-    })
+    let share = 1.0 / deeds.len() as f64;
+    deeds.iter().fold(Deed::default(), |sum, deed| sum.plus(&deed.times(share)))
 }
 
 impl Rows for MovedRows<'_> {
