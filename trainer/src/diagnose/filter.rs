@@ -7,7 +7,7 @@
 //!   x ← K x            e = (y − hᵀx)        x ← x + g e      white value e/√v
 //! ```
 
-use super::layout::{Cell, SLOWEST, Stretch};
+use super::layout::{Cell, SLOWEST, Stretch, WANDER_TAUS_S};
 use super::whitening::NoiseModel;
 use nalgebra::DMatrix;
 
@@ -48,103 +48,159 @@ pub(super) enum Kind {
     Beginning,
 }
 
-impl Kind {
-    /// How it shows in a cell.
-    fn seen(self, cell: &Cell) -> f64 {
-        match self {
-            Self::Mounting | Self::Position | Self::Turning => cell.cross_g,
-            Self::Beginning => cell.beginning,
-            _ => 1.0,
+/// One cell of each of `L` runs, as the filter sees them; of a run that has ended nothing is seen, and all is kept.
+struct Abreast<const L: usize> {
+    /// 1, or 0 of a run that has ended.
+    present: [f64; L],
+    cross_g: [f64; L],
+    beginning: [f64; L],
+    /// 0 where the sensor was moved, or the chamber was sent elsewhere.
+    same_position: [f64; L],
+    same_node: [f64; L],
+    unfaded: [[f64; L]; WANDER_TAUS_S.len()],
+    since_s: [f64; L],
+    /// Variance of what a cell does not share with others.
+    own: [f64; L],
+}
+
+impl<const L: usize> Abreast<L> {
+    const ENDED: Self = Self {
+        present: [0.0; L],
+        cross_g: [0.0; L],
+        beginning: [0.0; L],
+        same_position: [1.0; L],
+        same_node: [1.0; L],
+        unfaded: [[1.0; L]; WANDER_TAUS_S.len()],
+        since_s: [0.0; L],
+        own: [1.0; L],
+    };
+
+    fn new(noise: &NoiseModel, cells: [Option<&Cell>; L]) -> Self {
+        let mut all = Self::ENDED;
+        for (lane, cell) in cells.iter().enumerate().filter_map(|(lane, cell)| cell.map(|cell| (lane, cell))) {
+            all.present[lane] = 1.0;
+            all.cross_g[lane] = cell.cross_g;
+            all.beginning[lane] = cell.beginning;
+            all.same_position[lane] = f64::from(u8::from(!cell.new_position));
+            all.same_node[lane] = f64::from(u8::from(!cell.new_node));
+            all.unfaded.iter_mut().zip(&cell.unfaded).for_each(|(all, unfaded)| all[lane] = *unfaded);
+            all.since_s[lane] = cell.since_s;
+            all.own[lane] = noise.sample.powi(2) / cell.samples + (noise.per_c * cell.unseen_c).powi(2);
+        }
+        all
+    }
+
+    /// How a part of the noise shows.
+    fn seen(&self, kind: Kind) -> [f64; L] {
+        match kind {
+            Kind::Mounting | Kind::Position | Kind::Turning => self.cross_g,
+            Kind::Beginning => self.beginning,
+            _ => self.present,
         }
     }
 
-    /// Which share of it is kept on the way to a cell.
-    fn kept(self, cell: &Cell) -> f64 {
-        match self {
-            Self::Position | Self::Pose if cell.new_position => 0.0,
-            Self::Node if cell.new_node => 0.0,
-            Self::Fading(which) => cell.unfaded[which],
-            Self::Turning => cell.unfaded[SLOWEST],
-            _ => 1.0,
+    /// Which share of it is kept on the way to these cells.
+    fn kept(&self, kind: Kind) -> [f64; L] {
+        match kind {
+            Kind::Position | Kind::Pose => self.same_position,
+            Kind::Node => self.same_node,
+            Kind::Fading(which) => self.unfaded[which],
+            Kind::Turning => self.unfaded[SLOWEST],
+            _ => [1.0; L],
         }
     }
 }
 
-/// The filter's work at one cell, the same for every column.
-struct Step<const N: usize> {
-    seen: [f64; N],
-    kept: [f64; N],
-    gain: [f64; N],
-    variance: f64,
+/// The filter's work at one cell of each of `L` runs, the same for every column.
+struct Step<const N: usize, const L: usize> {
+    seen: [[f64; L]; N],
+    kept: [[f64; L]; N],
+    gain: [[f64; L]; N],
+    variance: [f64; L],
 }
 
-/// The states and what is known of them.
-struct Filter<'a, const N: usize> {
+/// The states of `L` runs at once, and what is known of them: a run's next cell waits for its last one, another run's
+/// doesn't.
+struct Filter<'a, const N: usize, const L: usize> {
     noise: &'a NoiseModel,
     states: [State; N],
-    covariance: [[f64; N]; N],
+    /// The lower triangle; the upper one is not used.
+    covariance: [[[f64; L]; N]; N],
 }
 
-impl<'a, const N: usize> Filter<'a, N> {
+impl<'a, const N: usize, const L: usize> Filter<'a, N, L> {
     fn new(noise: &'a NoiseModel, states: &[State]) -> Self {
         let mut all = [State::IDLE; N];
         all.iter_mut().zip(states).for_each(|(slot, state)| *slot = *state);
-        Self { noise, states: all, covariance: [[0.0; N]; N] }
-    }
-
-    fn steps(mut self, stretch: &Stretch) -> impl Iterator<Item = Step<N>> {
-        stretch.cells.iter().enumerate().map(move |(index, cell)| self.step(cell, index == 0))
-    }
-
-    fn step(&mut self, cell: &Cell, first: bool) -> Step<N> {
-        let kept = if first { self.begin() } else { self.predict(cell) };
-        let seen = self.states.map(|state| state.kind.seen(cell));
-        let mut shared = [0.0; N];
-        for (shared, row) in shared.iter_mut().zip(&self.covariance) {
-            *shared = row.iter().zip(&seen).map(|(covariance, seen)| covariance * seen).sum();
+        let mut covariance = [[[0.0; L]; N]; N];
+        for (index, state) in all.iter().enumerate() {
+            covariance[index][index] = [if matches!(state.kind, Kind::Walk) { 0.0 } else { state.variance }; L];
         }
-        let own = self.noise.sample.powi(2) / cell.samples + (self.noise.per_c * cell.unseen_c).powi(2);
-        let variance = own + shared.iter().zip(&seen).map(|(shared, seen)| shared * seen).sum::<f64>();
-        let gain = shared.map(|shared| shared / variance);
-        for (row, gain) in self.covariance.iter_mut().zip(&gain) {
-            row.iter_mut().zip(&shared).for_each(|(covariance, shared)| *covariance -= gain * shared);
+        Self { noise, states: all, covariance }
+    }
+
+    /// Moves on to these cells; a run that has ended has none.
+    fn step(&mut self, cells: [Option<&Cell>; L], first: bool) -> Step<N, L> {
+        let cells = Abreast::new(self.noise, cells);
+        let seen = self.states.map(|state| cells.seen(state.kind));
+        let kept = if first { [[1.0; L]; N] } else { self.states.map(|state| cells.kept(state.kind)) };
+        if !first {
+            self.predict(&kept, cells.since_s);
+        }
+        let mut shared = [[0.0; L]; N];
+        for row in 0..N {
+            for column in 0..=row {
+                for lane in 0..L {
+                    let covariance = self.covariance[row][column][lane];
+                    shared[row][lane] += covariance * seen[column][lane];
+                    if column < row {
+                        shared[column][lane] += covariance * seen[row][lane];
+                    }
+                }
+            }
+        }
+        let mut variance = cells.own;
+        for (shared, seen) in shared.iter().zip(&seen) {
+            (0..L).for_each(|lane| variance[lane] += shared[lane] * seen[lane]);
+        }
+        let gain = shared.map(|shared| std::array::from_fn(|lane| shared[lane] / variance[lane]));
+        for (row, gain) in gain.iter().enumerate() {
+            for (covariance, shared) in self.covariance[row].iter_mut().zip(&shared).take(row + 1) {
+                (0..L).for_each(|lane| covariance[lane] -= gain[lane] * shared[lane]);
+            }
         }
         Step { seen, kept, gain, variance }
     }
 
-    fn begin(&mut self) -> [f64; N] {
-        for (index, state) in self.states.iter().enumerate() {
-            self.covariance[index][index] = if matches!(state.kind, Kind::Walk) { 0.0 } else { state.variance };
+    /// Moves the covariance on over `since_s`, in which so much of each state is kept.
+    fn predict(&mut self, kept: &[[f64; L]; N], since_s: [f64; L]) {
+        for (row, own) in kept.iter().enumerate() {
+            for (covariance, other) in self.covariance[row].iter_mut().zip(kept).take(row + 1) {
+                (0..L).for_each(|lane| covariance[lane] *= own[lane] * other[lane]);
+            }
+            let State { kind, variance } = self.states[row];
+            let walks = matches!(kind, Kind::Walk);
+            for lane in 0..L {
+                let gained = if walks { since_s[lane] } else { 1.0 - own[lane] * own[lane] };
+                self.covariance[row][row][lane] += variance * gained;
+            }
         }
-        [1.0; N]
-    }
-
-    /// Moves the covariance on to `cell`; returns which share of each state is kept.
-    fn predict(&mut self, cell: &Cell) -> [f64; N] {
-        let kept = self.states.map(|state| state.kind.kept(cell));
-        for (row, own) in self.covariance.iter_mut().zip(&kept) {
-            row.iter_mut().zip(&kept).for_each(|(covariance, other)| *covariance *= own * other);
-        }
-        for (index, (state, kept)) in self.states.iter().zip(&kept).enumerate() {
-            let walks = matches!(state.kind, Kind::Walk);
-            let gained = if walks { cell.since_s } else { 1.0 - kept * kept };
-            self.covariance[index][index] += state.variance * gained;
-        }
-        kept
     }
 }
 
-impl<const N: usize> Step<N> {
-    /// Turns values into what the past did not foretell, and learns from it.
-    fn innovate<const LANES: usize>(&self, states: &mut [[f64; LANES]; N], values: &mut [f64; LANES]) {
+impl<const N: usize, const L: usize> Step<N, L> {
+    /// Turns values into what the past did not foretell, and learns from it: of several columns of one run, or of one
+    /// column of each run.
+    fn innovate<const V: usize>(&self, states: &mut [[f64; V]; N], values: &mut [f64; V]) {
+        let lane = |value: usize| if L == 1 { 0 } else { value };
         for (state, (kept, seen)) in states.iter_mut().zip(self.kept.iter().zip(&self.seen)) {
-            for (state, value) in state.iter_mut().zip(values.iter_mut()) {
-                *state *= kept;
-                *value -= seen * *state;
+            for value in 0..V {
+                state[value] *= kept[lane(value)];
+                values[value] -= seen[lane(value)] * state[value];
             }
         }
         for (state, gain) in states.iter_mut().zip(&self.gain) {
-            state.iter_mut().zip(values.iter()).for_each(|(state, value)| *state += gain * value);
+            (0..V).for_each(|value| state[value] += gain[lane(value)] * values[value]);
         }
     }
 }
@@ -161,42 +217,62 @@ pub(super) trait Pass: Send + Sync {
 /// The filter's pass over a run.
 pub(super) fn pass(noise: &NoiseModel, states: &[State], run: &Stretch) -> Box<dyn Pass> {
     match states.len() {
-        0..=4 => Box::new(Steps::of(Filter::<4>::new(noise, states), run)),
-        5..=6 => Box::new(Steps::of(Filter::<6>::new(noise, states), run)),
-        7..=8 => Box::new(Steps::of(Filter::<8>::new(noise, states), run)),
-        _ => Box::new(Steps::of(Filter::<MOST_STATES>::new(noise, states), run)),
+        0..=4 => Box::new(Steps::of(Filter::<4, 1>::new(noise, states), run)),
+        5..=6 => Box::new(Steps::of(Filter::<6, 1>::new(noise, states), run)),
+        7..=8 => Box::new(Steps::of(Filter::<8, 1>::new(noise, states), run)),
+        _ => Box::new(Steps::of(Filter::<MOST_STATES, 1>::new(noise, states), run)),
     }
 }
 
-/// Minus twice the logarithm of the likelihood of one column of a run, but for a constant.
-pub(super) fn deviance(noise: &NoiseModel, states: &[State], run: &Stretch, values: &[f64]) -> f64 {
+/// So many runs are filtered at once.
+pub(super) const RUNS: usize = 4;
+
+/// Minus twice the logarithm of the likelihood of one column of each of at most [`RUNS`] runs, but for a constant.
+pub(super) fn deviance(noise: &NoiseModel, states: &[State], runs: &[(&Stretch, &[f64])]) -> f64 {
     match states.len() {
-        0..=4 => deviance_by(Filter::<4>::new(noise, states), run, values),
-        5..=6 => deviance_by(Filter::<6>::new(noise, states), run, values),
-        7..=8 => deviance_by(Filter::<8>::new(noise, states), run, values),
-        _ => deviance_by(Filter::<MOST_STATES>::new(noise, states), run, values),
+        0..=4 => deviance_by(Filter::<4, RUNS>::new(noise, states), runs),
+        5..=6 => deviance_by(Filter::<6, RUNS>::new(noise, states), runs),
+        7..=8 => deviance_by(Filter::<8, RUNS>::new(noise, states), runs),
+        _ => deviance_by(Filter::<MOST_STATES, RUNS>::new(noise, states), runs),
     }
 }
 
 /// Most states.
 const MOST_STATES: usize = 11;
 
-fn deviance_by<const N: usize>(filter: Filter<N>, run: &Stretch, values: &[f64]) -> f64 {
-    let mut states = [[0.0]; N];
-    let one = |(step, value): (Step<N>, &f64)| {
-        let mut value = [*value];
-        step.innovate(&mut states, &mut value);
-        step.variance.ln() + value[0] * value[0] / step.variance
-    };
-    filter.steps(run).zip(values).map(one).sum()
+/// So many variances are multiplied before their logarithm is taken.
+const FACTORS: usize = 8;
+
+fn deviance_by<const N: usize>(mut filter: Filter<N, RUNS>, runs: &[(&Stretch, &[f64])]) -> f64 {
+    let longest = runs.iter().map(|(run, _)| run.cells.len()).max().unwrap_or_default();
+    let (mut states, mut squares, mut logarithms, mut product) = ([[0.0; RUNS]; N], 0.0, 0.0, 1.0);
+    for index in 0..longest {
+        let (mut cells, mut values) = ([None; RUNS], [0.0; RUNS]);
+        for (lane, (run, column)) in runs.iter().enumerate() {
+            cells[lane] = run.cells.get(index);
+            values[lane] = column.get(index).copied().unwrap_or_default();
+        }
+        let step = filter.step(cells, index == 0);
+        step.innovate(&mut states, &mut values);
+        for (value, variance) in values.iter().zip(&step.variance) {
+            squares += value * value / variance;
+            product *= variance;
+        }
+        if (index + 1) % (FACTORS / RUNS) == 0 || index + 1 == longest {
+            logarithms += f64::ln(product);
+            product = 1.0;
+        }
+    }
+    squares + logarithms
 }
 
 /// What the filter does at every cell of a run.
-struct Steps<const N: usize>(Vec<Step<N>>);
+struct Steps<const N: usize>(Vec<Step<N, 1>>);
 
 impl<const N: usize> Steps<N> {
-    fn of(filter: Filter<N>, run: &Stretch) -> Self {
-        Self(filter.steps(run).collect())
+    fn of(mut filter: Filter<N, 1>, run: &Stretch) -> Self {
+        let cells = run.cells.iter().enumerate();
+        Self(cells.map(|(index, cell)| filter.step([Some(cell)], index == 0)).collect())
     }
 }
 
@@ -207,12 +283,12 @@ impl<const N: usize> Pass for Steps<N> {
     }
 
     fn log_det(&self) -> f64 {
-        self.0.iter().map(|step| step.variance.ln()).sum()
+        self.0.iter().map(|step| step.variance[0].ln()).sum()
     }
 }
 
 /// Filters so many columns at once.
-fn filtered<const N: usize, const LANES: usize>(steps: &[Step<N>], values: &DMatrix<f64>) -> DMatrix<f64> {
+fn filtered<const N: usize, const LANES: usize>(steps: &[Step<N, 1>], values: &DMatrix<f64>) -> DMatrix<f64> {
     let (rows, width) = values.shape();
     let mut white = DMatrix::zeros(rows, width);
     let source = values.as_slice();
@@ -226,7 +302,7 @@ fn filtered<const N: usize, const LANES: usize>(steps: &[Step<N>], values: &DMat
                 values[lane] = source[start + lane * rows + row];
             }
             step.innovate(&mut states, &mut values);
-            let scale = step.variance.sqrt().recip();
+            let scale = step.variance[0].sqrt().recip();
             for lane in 0..lanes {
                 target[lane * rows + row] = values[lane] * scale;
             }
@@ -238,7 +314,6 @@ fn filtered<const N: usize, const LANES: usize>(steps: &[Step<N>], values: &DMat
 #[cfg(test)]
 mod tests {
     use super::super::gathered::Gathered;
-    use super::super::layout::WANDER_TAUS_S;
     use super::*;
     use crate::campaign::Run;
     use nalgebra::DVector;
@@ -317,7 +392,7 @@ mod tests {
             });
             let factor = covariance.cholesky().unwrap();
             let worked = factor.determinant().ln() + column.dot(&factor.solve(&column));
-            let found = deviance(&noise, states, &stretch, &values);
+            let found = deviance(&noise, states, &[(&stretch, &values)]);
             assert!((found - worked).abs() < 1e-8 * worked.abs(), "{count}: {found} {worked}");
             let pass = pass(&noise, states, &stretch);
             let white = pass.whitened(&DMatrix::from_column_slice(CELLS, 1, &values));
