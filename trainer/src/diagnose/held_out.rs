@@ -5,7 +5,7 @@
 
 use super::case::Case;
 use super::case::Noises;
-use super::evidence::product;
+use super::evidence::{product, stacked};
 use super::instrument::Known;
 use super::layout::Cell;
 use super::whitening::Columns;
@@ -37,7 +37,7 @@ impl HeldOut {
 impl Case<'_> {
     /// Predicts each run from all the others.
     pub fn held_out(&self, known: &Known, noises: &Noises) -> HeldOut {
-        let (left, freedom) = (self.left(known).delta, self.adapting(known).delta);
+        let (left, freedom) = (self.left(known).delta, self.recalling(known));
         let whitening = noises.delta.whitening(&self.layout);
         let (white_left, white_freedom) = (whitening.of(&left), whitening.of(&freedom));
         let mut normal = product(&white_freedom, &white_freedom);
@@ -64,6 +64,21 @@ impl Case<'_> {
         }
         let rms = |squares: f64| if samples > 0.0 { (squares.max(0.0) / samples).sqrt() } else { 0.0 };
         HeldOut { residual_ug: rms(squares), about_rig_ug: rms(squares - of_rig), deviance, parts, whole_runs }
+    }
+
+    /// What may adapt where something is left out: the instrument, and the effects' parameters about as far as they
+    /// could be known beforehand. What alone determines a parameter must not leave it at the mercy of noise.
+    fn recalling(&self, known: &Known) -> Columns {
+        let stiff = self.stiff(known).delta;
+        if known.effects.is_empty() {
+            return stiff;
+        }
+        let (mut tangents, _) = self.tangents(&self.bare, known, &self.left(known));
+        let reaches = known.reaches();
+        for run in &mut tangents {
+            run.column_iter_mut().zip(&reaches).for_each(|(mut column, reach)| column *= *reach);
+        }
+        stacked(&stiff, &tangents)
     }
 
     /// What is left out together: a run, or a stretch of a run where there are too few of them.

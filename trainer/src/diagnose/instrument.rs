@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::noise::{rms, sample_sigma_g};
 use crate::train::{HIDDEN_SIZE, OUTPUT_SIZE};
 use firmware_core::activation::{sigmoid, slope};
-use firmware_core::effect;
+use firmware_core::effect::{self, Role};
 use firmware_core::{Memory, Network, Scale};
 use nalgebra::DMatrix;
 use protocol::limits::{HIDDEN, MAX_PARAMETERS};
@@ -68,6 +68,24 @@ impl Known {
     /// Each by itself.
     pub fn each(&self) -> impl Iterator<Item = Self> {
         self.effects.iter().zip(&self.coefficients.values).map(|(effect, values)| Self::NONE.with(effect, values))
+    }
+
+    /// How far each free parameter may be from where it is, in the optimiser's units: an amplitude by all of it, a shape by
+    /// a factor of e, a place by the effect's own width.
+    pub fn reaches(&self) -> Vec<f64> {
+        let parameters = self.coefficients.to_parameters(&self.effects);
+        let free = self.effects.iter().zip(&self.coefficients.values).flat_map(|(effect, values)| {
+            let width = effect.about.parameters.iter().zip(values).find(|(about, _)| about.role == Role::Shape);
+            let width = width.map_or(1.0, |(_, width)| *width);
+            effect.free().map(move |about| (about.role, width))
+        });
+        free.zip(parameters)
+            .map(|((role, width), parameter)| match role {
+                Role::Amplitude => parameter.abs(),
+                Role::Shape => 1.0,
+                Role::Location | Role::Origin => width,
+            })
+            .collect()
     }
 
     /// What each of them remembers.

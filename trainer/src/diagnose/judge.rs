@@ -10,7 +10,7 @@ use super::layout::Layout;
 use super::left::Held;
 use super::noise_search::first_guess;
 use super::observable::{Screening, unobservable};
-use super::search::{Contender, Found, freedom_of};
+use super::search::{Contender, Found, LOWERED, freedom_of};
 use super::separation::separate;
 use super::sum_channel::SumChannel;
 use super::telltale::Telltale;
@@ -35,11 +35,10 @@ const CONFOUNDED: f64 = 10.0;
 const CONFOUNDED_SHARE: f64 = 0.1;
 /// Wander within a run beyond so many times the sample noise is no noise of a resonator: something causes it.
 const STRUCTURE: f64 = 1.0;
+/// And beyond this share of what a rig does per g across the input axis, if nobody wrote down how it stood.
+const UNSEEN: f64 = 0.5;
 /// Evidence of an effect beyond its physical bounds that tells of something unknown: formulas are not exact.
 const SURELY_STRAINED: f64 = 100.0;
-/// Where structure remains, findings must lower the held-out residual beyond what the rig does by this share, or they are
-/// not its cause: what merely resembles it does not foretell other runs.
-const REMOVED: f64 = 0.05;
 /// Steps of the last fit of all findings together.
 const LAST_STEPS: usize = 12;
 
@@ -214,7 +213,7 @@ fn prune(case: &mut Case, start: &Known, found: &mut Findings) -> Option<Vec<Str
 /// the residual of what was left out, if there is one.
 fn foreseen(case: &mut Case, start: &Known, found: &Findings, candidates: &[Candidate]) -> Option<Findings> {
     let weak = found.steps.first().is_none_or(|step| step.winner.evidence < WEAK) && found.formula.is_none();
-    if !weak || structure_ug(&found.noises.delta) <= STRUCTURE * case.sample_ug {
+    if !weak || !is_structured(case, &found.noises.delta) {
         return None;
     }
     let step = case.foreseen(start, candidates, &found.noises)?;
@@ -225,10 +224,10 @@ fn foreseen(case: &mut Case, start: &Known, found: &Findings, candidates: &[Cand
 }
 
 fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) -> Diagnosis {
-    let structure_ug = structure_ug(&found.noises.delta);
-    let structured = structure_ug > STRUCTURE * case.sample_ug;
+    let structured = is_structured(case, &found.noises.delta);
     let about_rig_ug = |known: &Known| case.held_out(known, &found.noises).structure_ug();
-    let futile = structured && about_rig_ug(&found.known) > (1.0 - REMOVED) * about_rig_ug(start);
+    // Where structure remains, what merely resembles its cause does not foretell other runs.
+    let futile = structured && about_rig_ug(&found.known) > LOWERED * about_rig_ug(start);
     if futile {
         found.known = start.clone();
         found.steps.clear();
@@ -255,10 +254,18 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
         explainable: explainable(case, residual_ug, residual_after_ug, &found.noises.delta),
         findings,
         unobservable: Vec::new(),
-        unexplained: unexplained.then(|| unexplained_rest(&found, structure_ug, &telltales, &dependences, campaign)),
+        unexplained: unexplained
+            .then(|| unexplained_rest(&found, structure_ug(&found.noises.delta), &telltales, &dependences, campaign)),
         dependences,
         noise: noise(&found.noises.delta),
     }
+}
+
+/// Whether something causes the wander within runs.
+fn is_structured(case: &Case, noise: &NoiseModel) -> bool {
+    let rig_ug = noise.parts[POSITION].hypot(noise.parts[TURN]);
+    let unseen_ug = if case.layout.may_turn_unseen() { UNSEEN * rig_ug } else { 0.0 };
+    structure_ug(noise) > f64::max(STRUCTURE * case.sample_ug, unseen_ug)
 }
 
 /// Wander within a run, µg RMS over an hour.

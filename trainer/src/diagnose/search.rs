@@ -92,7 +92,7 @@ const FORESEEN: usize = 8;
 /// What was left out must be read with half the error, or no more than a resemblance was found.
 const HALVED: f64 = 0.5;
 /// Or what neither start nor mounting explains must be lowered to this share.
-const LOWERED: f64 = 0.9;
+pub(super) const LOWERED: f64 = 0.9;
 /// And what was left out must not be read with so much more of it.
 const WORSE: f64 = 1.1;
 /// Share of the evidence that must hold for runs that were left out.

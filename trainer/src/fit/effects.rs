@@ -58,6 +58,11 @@ impl Chosen {
         }
     }
 
+    /// The parameters that a fit chooses.
+    pub(crate) fn free(&self) -> impl Iterator<Item = &'static Parameter> {
+        self.about.parameters.iter().filter(|about| self.fixed(about).is_none())
+    }
+
     /// The optimiser's parameter for a coefficient's value, and back.
     fn parameter_of(&self, parameter: &Parameter, value: f64) -> f64 {
         match parameter.role {
@@ -288,9 +293,7 @@ pub(crate) fn mean_deed(deeds: &[Deed]) -> Deed {
 
 impl Rows for MovedRows<'_> {
     fn parameters(&self) -> usize {
-        let free =
-            |effect: &Chosen| effect.about.parameters.iter().filter(|about| effect.fixed(about).is_none()).count();
-        self.effects.iter().map(free).sum()
+        self.effects.iter().map(|effect| effect.free().count()).sum()
     }
 
     fn update(&mut self, parameters: &[f64], tangents: bool) {
