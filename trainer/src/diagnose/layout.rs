@@ -73,6 +73,11 @@ impl<'a> Stretch<'a> {
         let gathered = Gathered::new(&run.rows, rows.iter());
         Self { run, cells: cells_of(run, rows, scale, cross), gathered }
     }
+
+    /// Whether the sensor was moved during the run.
+    pub fn is_moved(&self) -> bool {
+        self.cells.iter().skip(1).any(|cell| cell.new_position)
+    }
 }
 
 /// References closer than this are the same position, g.

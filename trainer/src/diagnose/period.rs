@@ -7,9 +7,9 @@
 use super::case::{Case, Noises};
 use super::evidence::Bench;
 use super::instrument::Known;
-use super::layout::Cell;
+use super::layout::{Cell, Stretch};
 use super::telltale::Telltale;
-use super::whitening::Columns;
+use super::whitening::{Columns, NoiseModel, POSITION, TURN};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -90,20 +90,28 @@ impl Case<'_> {
             }
         }
         let white = noise.whitening(&fine).of(&values);
-        let course = |(cells, values): (&Vec<Cell>, &[f64])| Course::new(cells, values);
-        let pairs = fine.stretches.iter().map(|stretch| &stretch.cells).zip(white.iter().map(DMatrix::as_slice));
-        Some(pairs.filter_map(course).collect())
+        let course = |(stretch, values): (&Stretch, &DMatrix<f64>)| {
+            let moved = self.layout.may_turn_unseen() && stretch.is_moved();
+            let samples = stretch.cells.iter().zip(values.iter());
+            Course::new(samples.filter(|(cell, _)| !(moved && shows_rig(cell, &noises.delta))))
+        };
+        Some(fine.stretches.iter().zip(&white).filter_map(course).collect())
     }
 }
 
+/// Whether a rig that is turned to and fro, unseen, shows here above the noise: it keeps time as well as anything.
+fn shows_rig(cell: &Cell, noise: &NoiseModel) -> bool {
+    noise.parts[POSITION].max(noise.parts[TURN]) * cell.cross_g > noise.sample
+}
+
 impl Course {
-    /// `None` for a single sample.
-    fn new(cells: &[Cell], values: &[f64]) -> Option<Self> {
-        let times_s: Vec<f64> = cells.iter().map(|cell| cell.time_s).collect();
+    /// `None` for less than two samples.
+    fn new<'a>(samples: impl Iterator<Item = (&'a Cell, &'a f64)>) -> Option<Self> {
+        let (times_s, values): (Vec<f64>, Vec<f64>) = samples.map(|(cell, value)| (cell.time_s, *value)).unzip();
         let mut steps: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0).collect();
         steps.sort_unstable_by(f64::total_cmp);
         let step_s = *steps.get(steps.len() / 2)?;
-        Some(Self { times_s, values: values.to_vec(), step_s })
+        Some(Self { times_s, values, step_s })
     }
 
     fn seconds(&self) -> f64 {
