@@ -195,3 +195,26 @@ fn what_a_campaign_cannot_show_is_said() {
     assert!(why("second-order").contains("static calibration takes it up"));
     assert!(why("turn-on").contains("new at every start"));
 }
+
+#[test]
+fn a_rig_that_is_turned_to_and_fro_unseen_is_no_period() {
+    let unseen = SHORT.replace("\"cross_g\", ", "").replacen("\n[[run]]", "\n[rig]\nmount_arcsec = 40\n\n[[run]]", 1);
+    for seed in 1..=2 {
+        let campaign = played(&Scenario::from_toml(&unseen).expect("a scenario"), seed);
+        let diagnosis = diagnose(&model(&campaign), &campaign, &Quiet).expect("a diagnosis");
+        assert_eq!(diagnosis.verdict, Verdict::NothingMissing, "seed {seed}: {diagnosis:#?}");
+    }
+}
+
+#[test]
+fn an_effect_that_one_run_alone_excites_is_found_though_its_channel_is_noisy_everywhere() {
+    let mut campaign = measured(&["supply-voltage"], 5.0, 24);
+    campaign.runs.retain(|run| run.name != "supply-2");
+    let supply = campaign.channels.iter().position(|channel| channel == "supply_v").expect("a channel");
+    for (index, row) in campaign.runs.iter_mut().flat_map(|run| run.rows.iter_mut().enumerate()) {
+        // ±20 µV.
+        row.sample.channels[supply] += index as i64 * 37 % 41 - 20;
+    }
+    let diagnosis = diagnose(&model(&campaign), &campaign, &Quiet).expect("a diagnosis");
+    assert_eq!(named(&diagnosis), ["supply-voltage"], "{diagnosis:#?}");
+}
