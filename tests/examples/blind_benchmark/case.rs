@@ -48,7 +48,9 @@ impl Case {
     pub fn measure(options: &Options, protocol: Protocol, class: Class, index: usize) -> Result<Self, String> {
         let (blind, round) = hiding(options, class, index);
         let rig = (index + round) % 2 == 1;
-        let (seed, blinded, truth) = blinded(&scenario(protocol, rig)?, seed(options, protocol, class, index), &blind)?;
+        let mut scenario = scenario(protocol, rig)?;
+        scenario.run.iter_mut().for_each(|run| run.common.record_every_s /= options.denser);
+        let (seed, blinded, truth) = blinded(&scenario, seed(options, protocol, class, index), &blind)?;
         let recording = simulated(&blinded, seed)?;
         let campaign = read(&recording)?;
         let hidden = hidden(&truth, seed)?;

@@ -110,6 +110,7 @@ pub(super) fn name_of(effect: &Chosen) -> &str {
 }
 
 fn shapes(effect: &Chosen, case: &Case) -> Vec<Vec<f64>> {
+    let fork_c_per_g = case.shift_c_per_g();
     let searched = effect.about.parameters.iter().filter(|about| about.role == Role::Shape).count();
     let placed = is_placed(effect.about);
     let mut found = vec![Vec::new()];
@@ -124,9 +125,7 @@ fn shapes(effect: &Chosen, case: &Case) -> Vec<Vec<f64>> {
             Role::Shape if placed => WIDTHS.to_vec(),
             Role::Shape => logarithmic(about, if searched > 1 { SHAPES_OF_SEVERAL } else { SHAPES }),
             Role::Location if about.unit == "°C" => places(case, width_c(effect.about, before)),
-            Role::Location => {
-                SHIFTS.iter().map(|share| (share * case.shift_c_per_g()).clamp(about.low, about.high)).collect()
-            }
+            Role::Location => SHIFTS.map(|share| (share * fork_c_per_g).clamp(about.low, about.high)).into(),
         };
         let extended = |before: Vec<f64>| {
             let next = choices(&before);

@@ -325,19 +325,13 @@ mod tests {
         let time_s = |index: usize| (index * index) as f64 * 7.0 + 3.0;
         let since_s = index.checked_sub(1).map_or(3.0, |last| time_s(index) - time_s(last));
         Cell {
-            rows: index..index + 1,
             samples: 1.0 + (index % 3) as f64,
-            time_s: time_s(index),
-            since_s,
-            unfaded: WANDER_TAUS_S.map(|tau_s| (-since_s / tau_s).exp()),
-            x: 0.0,
-            t: 0.0,
-            level_g: 0.0,
             cross_g: 0.5 + index as f64 / 20.0,
             unseen_c: if index == 5 { 0.01 } else { 0.0 },
             beginning: (-(index as f64)).exp(),
             new_node: index == 6,
             new_position: index == 4 || index == 9,
+            ..Cell::plain(index, time_s(index), since_s)
         }
     }
 

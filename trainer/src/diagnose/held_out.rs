@@ -118,27 +118,12 @@ const PARTS_OF_FEW: usize = 12;
 
 #[cfg(test)]
 mod tests {
-    use super::super::layout::WANDER_TAUS_S;
     use super::*;
 
     const CELLS: usize = 20;
 
     fn cell(index: usize, cross_g: f64) -> Cell {
-        Cell {
-            rows: index..index + 1,
-            samples: 1.0 + (index % 3) as f64,
-            time_s: index as f64,
-            since_s: 1.0,
-            unfaded: WANDER_TAUS_S.map(|tau_s| (-1.0 / tau_s).exp()),
-            x: 0.0,
-            t: 0.0,
-            level_g: 0.0,
-            cross_g,
-            unseen_c: 0.0,
-            beginning: 0.0,
-            new_node: false,
-            new_position: false,
-        }
+        Cell { samples: 1.0 + (index % 3) as f64, cross_g, ..Cell::plain(index, index as f64, 1.0) }
     }
 
     #[test]

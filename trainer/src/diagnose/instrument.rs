@@ -200,31 +200,29 @@ impl Instrument {
 
     /// How the reading can change by retraining, µg per expected change: polynomials and the network's tangents.
     pub fn freedom(&self, layout: &Layout) -> Columns {
-        let departure_ug = f64::from(self.model.scaling.output_g).abs() * UG;
         let still = layout.is_still();
-        let column = |cell: &Cell| {
+        let row = |cell: &Cell| {
             if still {
                 // The slope is stated, not learnt: retraining can change the course over temperature only.
-                return chebyshev(POWERS.1, cell.t).into_iter().map(|value| value * departure_ug).collect();
+                return chebyshev(POWERS.1, cell.t);
             }
             let mut values = polynomials(cell.x, cell.t);
-            values.iter_mut().for_each(|value| *value *= departure_ug);
-            values.extend(self.tangents(cell).map(|value| value * departure_ug * FREEDOM));
+            values.extend(self.tangents(cell).map(|value| value * FREEDOM));
             values
         };
-        let of = |stretch: &Stretch| {
-            let values: Vec<Vec<f64>> = stretch.cells.iter().map(column).collect();
-            let width = values.first().map_or(0, Vec::len);
-            DMatrix::from_row_iterator(values.len(), width, values.into_iter().flatten())
-        };
-        layout.stretches.par_iter().map(of).collect()
+        self.departures(layout, row)
     }
 
     /// How the reading of a smooth instrument can change, µg per expected change: polynomials alone.
     pub fn smooth(&self, layout: &Layout) -> Columns {
+        self.departures(layout, |cell| polynomials(cell.x, cell.t))
+    }
+
+    /// A row of departures from the line in each cell, µg, from those in units of the network's output.
+    fn departures(&self, layout: &Layout, row: impl Fn(&Cell) -> Vec<f64> + Sync) -> Columns {
         let departure_ug = f64::from(self.model.scaling.output_g).abs() * UG;
         let of = |stretch: &Stretch| {
-            let rows: Vec<Vec<f64>> = stretch.cells.iter().map(|cell| polynomials(cell.x, cell.t)).collect();
+            let rows: Vec<Vec<f64>> = stretch.cells.iter().map(&row).collect();
             let width = rows.first().map_or(0, Vec::len);
             DMatrix::from_row_iterator(rows.len(), width, rows.into_iter().flatten().map(|value| value * departure_ug))
         };

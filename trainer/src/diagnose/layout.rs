@@ -39,6 +39,28 @@ pub(super) struct Cell {
     pub new_position: bool,
 }
 
+#[cfg(test)]
+impl Cell {
+    /// One sample of many at rest, `since_s` after the last one.
+    pub fn plain(index: usize, time_s: f64, since_s: f64) -> Self {
+        Self {
+            rows: index..index + 1,
+            samples: 1.0,
+            time_s,
+            since_s,
+            unfaded: WANDER_TAUS_S.map(|tau_s| (-since_s / tau_s).exp()),
+            x: 0.0,
+            t: 0.0,
+            level_g: 0.0,
+            cross_g: 1.0,
+            unseen_c: 0.0,
+            beginning: 0.0,
+            new_node: false,
+            new_position: false,
+        }
+    }
+}
+
 /// Correlation times of the noise's wander, s: two octaves of flicker, and what takes hours.
 pub(super) const WANDER_TAUS_S: [f64; 3] = [60.0, 600.0, 5000.0];
 /// The last of them.

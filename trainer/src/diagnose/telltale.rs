@@ -38,8 +38,11 @@ pub(super) struct Telltale {
 
 /// Evidence that a structure must have; there are a hundred to choose from.
 const ENOUGH: f64 = 30.0;
-/// And what is asked by itself: the kink, of a smooth instrument; what the hottest and coldest moments left.
-const ENOUGH_OF_ONE: f64 = 10.0;
+/// And what is asked by itself: the kink, of a smooth instrument;
+const ENOUGH_OF_KINK: f64 = 10.0;
+/// what the hottest and coldest moments left, of which a few nodes must tell: their scatter had evidence of 11 and 12 in
+/// two rigs of a hundred.
+const ENOUGH_OF_RECORD: f64 = 15.0;
 /// And its size, in units of the noise of a sample.
 const MATTERS: f64 = 0.5;
 /// So many are judged in full, by the noise as estimated and by a small one.
@@ -65,8 +68,8 @@ impl Case<'_> {
         found.extend(self.swing(known, noises));
         found.retain(|one| one.evidence > ENOUGH);
         let records = self.records().into_par_iter().filter_map(|record| scene.judged(&record, &instrument));
-        let questions = records.collect::<Vec<_>>().into_iter().chain(scene.kinked());
-        found.extend(questions.filter(|one| one.evidence > ENOUGH_OF_ONE));
+        found.extend(records.filter(|one| one.evidence > ENOUGH_OF_RECORD).collect::<Vec<_>>());
+        found.extend(scene.kinked().filter(|one| one.evidence > ENOUGH_OF_KINK));
         found.retain(|one| self.matters(one));
         found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         found
@@ -159,7 +162,7 @@ impl Scene<'_> {
         let (kink, levels) = (self.case.kink(), self.case.levels());
         // Only a smooth instrument may absorb it, not whatever a network may be bent to.
         let smooth = self.case.instrument.smooth(&self.case.layout);
-        let is_kink = |one: &Telltale| one.evidence > ENOUGH_OF_ONE && one.size_ug > self.bent_ug();
+        let is_kink = |one: &Telltale| one.evidence > ENOUGH_OF_KINK && one.size_ug > self.bent_ug();
         let telltale = self.judged(&kink, &self.free(&smooth)?).filter(is_kink)?;
         let deviances = |scatter: &f64| {
             let levels: Columns = levels.iter().map(|run| run * (scatter * self.case.sample_ug)).collect();
