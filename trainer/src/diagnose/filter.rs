@@ -393,4 +393,20 @@ mod tests {
             assert!((white.norm_squared() + pass.log_det() - worked).abs() < 1e-8 * worked.abs(), "{count}");
         }
     }
+
+    #[test]
+    fn runs_of_any_length_may_be_filtered_together() {
+        let noise = NoiseModel { sample: 5.0, per_c: 900.0, parts: [0.0; super::super::whitening::PARTS] };
+        let kinds = [(Kind::Constant, 150.0), (Kind::Walk, 0.1), (Kind::Node, 25.0), (Kind::Mounting, 40.0)];
+        let states = kinds.map(|(kind, sigma)| State { kind, variance: sigma * sigma });
+        let run = Run { name: String::new(), kind: String::new(), source: PathBuf::new(), rows: Vec::new() };
+        let stretch =
+            |cells: usize| Stretch { run: &run, cells: (0..cells).map(cell).collect(), gathered: Gathered::default() };
+        let stretches = [CELLS, 7, 1].map(stretch);
+        let values: Vec<f64> = (0..CELLS).map(|k| (k * 37 % 17) as f64 * 9.0 - 60.0).collect();
+        let runs: Vec<(&Stretch, &[f64])> =
+            stretches.iter().map(|stretch| (stretch, &values[..stretch.cells.len()])).collect();
+        let alone: f64 = runs.iter().map(|run| deviance(&noise, &states, &[*run])).sum();
+        assert!((deviance(&noise, &states, &runs) / alone - 1.0).abs() < 1e-12);
+    }
 }
