@@ -106,10 +106,36 @@ impl Case<'_> {
         Freedom { delta: self.freedom.clone(), sum }
     }
 
-    /// What may adapt, the effects' own parameters too.
-    pub fn adapting(&self, known: &Known) -> Freedom {
-        let freedom = self.stiff(known);
-        if known.effects.is_empty() { freedom } else { self.widened(&freedom, &self.bare, known, &self.left(known)) }
+    /// What may adapt, the effects' own parameters too; under `noises`, as far as the sum of the frequencies leaves them open.
+    pub fn adapting(&self, known: &Known, noises: Option<&Noises>) -> Freedom {
+        let stiff = self.stiff(known);
+        if known.effects.is_empty() {
+            return stiff;
+        }
+        let left = self.left(known);
+        let (delta, sum) = self.tangents(&self.bare, known, &left);
+        let mut own = generous(&delta, self.sample_ug);
+        let told: Vec<usize> = known.tells().enumerate().filter_map(|(place, tells)| tells.then_some(place)).collect();
+        let of_told = |columns: &Columns| columns.iter().map(|run| run.select_columns(&told)).collect::<Columns>();
+        let tangents = sum.as_ref().filter(|_| !told.is_empty()).map(of_told);
+        let open = noises.zip(tangents).and_then(|(noises, tangents)| self.left_open(&left, &stiff, noises, &tangents));
+        if let Some(open) = open {
+            for (own, delta) in own.iter_mut().zip(of_told(&delta)) {
+                let columns = delta * &open;
+                told.iter().enumerate().for_each(|(from, place)| own.set_column(*place, &columns.column(from)));
+            }
+        }
+        let both = stiff.sum.as_ref().zip(sum.as_ref()).zip(self.sum.as_ref());
+        Freedom {
+            sum: both.map(|((stiff, sum), channel)| stacked(stiff, &generous(sum, channel.sample))),
+            delta: stacked(&stiff.delta, &own),
+        }
+    }
+
+    /// How the sum of the frequencies leaves parameters open that it tells of: a root of their covariance.
+    fn left_open(&self, left: &Left, stiff: &Freedom, noises: &Noises, tangents: &Columns) -> Option<DMatrix<f64>> {
+        let bench = Bench::new(&self.layout, noises.sum?, left.sum.as_ref()?, stiff.sum.as_ref()?)?;
+        Some(bench.score(tangents).covariance()?.cholesky()?.unpack())
     }
 
     /// `freedom`, and the parameters of effects that leave `left` beside others that are held.

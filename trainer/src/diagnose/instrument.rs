@@ -110,6 +110,11 @@ impl Known {
         both
     }
 
+    /// Of each free parameter, whether the sum of the frequencies tells of it.
+    pub fn tells(&self) -> impl Iterator<Item = bool> {
+        self.effects.iter().flat_map(|effect| effect.free().map(|_| response(effect.about) == Response::Told))
+    }
+
     /// Those whose deeds say what happens to the sum of the frequencies.
     pub fn told(&self) -> Self {
         let told = self.each().filter(|one| response(one.effects[0].about) == Response::Told);

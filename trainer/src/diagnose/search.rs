@@ -177,7 +177,7 @@ impl Case<'_> {
         let noises = contender.noises.as_ref()?;
         let with = known.with(&contender.effect, &contender.values);
         let case = self.remembering(&with);
-        let freedom = case.adapting(known).delta;
+        let freedom = case.adapting(known, Some(noises)).delta;
         let fitted =
             |known: &Known| Some(Bench::new(&case.layout, noises.delta, &case.left(known).delta, &freedom)?.deviance);
         let gain = fitted(known)? - fitted(&with)?;
@@ -191,7 +191,7 @@ impl Case<'_> {
     /// The effect with which what was left out is foretold far better than without, wherever a wander that large hides
     /// what likelihood could say. The noise is taken to be small, so that effects compete with effects and not with it.
     pub fn foreseen(&self, known: &Known, candidates: &[Candidate], noises: &Noises) -> Option<Found> {
-        let (left, freedom, held) = (self.left(known), self.adapting(known), self.held(known));
+        let (left, freedom, held) = (self.left(known), self.adapting(known, Some(noises)), self.held(known));
         let small = noises.small();
         let benches = self.benches(&left, &freedom, &small)?;
         let mut screened = self.screen(&benches, known, candidates);
@@ -223,7 +223,7 @@ impl Case<'_> {
     }
 
     fn scene(&self, known: &Known, noises: &Noises) -> Option<Scene> {
-        let (left, freedom, held) = (self.left(known), self.adapting(known), self.held(known));
+        let (left, freedom, held) = (self.left(known), self.adapting(known, Some(noises)), self.held(known));
         let noises = self.noises(&left, &freedom, Some(noises));
         let deviance = self.benches(&left, &freedom, &noises)?.deviance();
         Some(Scene { held, left, freedom, noises, deviance })
