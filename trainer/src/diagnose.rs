@@ -12,6 +12,7 @@
 //!
 //! `docs/diagnosis.md` tells how it works.
 
+mod abreast;
 mod answer;
 mod candidate;
 mod case;

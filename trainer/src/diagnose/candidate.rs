@@ -4,7 +4,7 @@ use super::case::Case;
 use super::evidence::{difference, joined};
 use super::instrument::Known;
 use super::left::Left;
-use super::sum_channel::{Response, response};
+use super::sum_channel::is_told;
 use super::whitening::Columns;
 use crate::campaign::Campaign;
 use crate::expression::Expression;
@@ -54,7 +54,7 @@ impl Candidate {
 
     fn new(case: &Case, still: &Left, effect: Chosen, values: Vec<f64>) -> Self {
         let amplitudes = amplitudes(effect.about);
-        let told = response(effect.about) == Response::Told;
+        let told = is_told(effect.about);
         let (mut columns, mut sums): (Vec<Columns>, Vec<Columns>) = (Vec::new(), Vec::new());
         for only in 0..amplitudes.len().max(1) {
             let mut values = values.clone();

@@ -5,7 +5,7 @@ use super::instrument::{Instrument, Known};
 use super::layout::{Cell, Layout, Stretch};
 use super::left::{Held, Left};
 use super::noise_search::{first_guess, noise};
-use super::sum_channel::{Response, SumChannel, response};
+use super::sum_channel::SumChannel;
 use super::whitening::{Columns, NoiseModel, TURN, WANDER};
 use nalgebra::DMatrix;
 
@@ -99,51 +99,64 @@ impl Case<'_> {
     /// What may adapt around these effects, their own parameters held.
     pub fn stiff(&self, known: &Known) -> Freedom {
         let sum = self.sum.as_ref().map(|channel| {
-            let free = known.each().filter(|one| response(one.effects[0].about) != Response::Told);
-            let columns: Vec<Columns> = free.map(|one| self.alone(&one)).collect();
+            let columns: Vec<Columns> = known.untold().each().map(|one| self.alone(&one)).collect();
             if columns.is_empty() { channel.freedom.clone() } else { stacked(&channel.freedom, &joined(&columns)) }
         });
         Freedom { delta: self.freedom.clone(), sum }
     }
 
-    /// What may adapt, the effects' own parameters too; under `noises`, as far as the sum of the frequencies leaves them open.
-    pub fn adapting(&self, known: &Known, noises: Option<&Noises>) -> Freedom {
+    /// What may adapt, the effects' own parameters too, as long as no noise is known.
+    pub fn loose(&self, known: &Known) -> Freedom {
+        let stiff = self.stiff(known);
+        if known.effects.is_empty() {
+            return stiff;
+        }
+        self.widened(&stiff, &self.bare, known, &self.left(known))
+    }
+
+    /// What may adapt, the effects' own parameters too as far as the sum of the frequencies leaves them open.
+    pub fn adapting(&self, known: &Known, noises: &Noises) -> Freedom {
         let stiff = self.stiff(known);
         if known.effects.is_empty() {
             return stiff;
         }
         let left = self.left(known);
-        let (delta, sum) = self.tangents(&self.bare, known, &left);
-        let mut own = generous(&delta, self.sample_ug);
+        let tangents = self.tangents(&self.bare, known, &left);
+        let mut freedom = self.with_tangents(&stiff, &tangents);
         let told: Vec<usize> = known.tells().enumerate().filter_map(|(place, tells)| tells.then_some(place)).collect();
-        let of_told = |columns: &Columns| columns.iter().map(|run| run.select_columns(&told)).collect::<Columns>();
-        let tangents = sum.as_ref().filter(|_| !told.is_empty()).map(of_told);
-        let open = noises.zip(tangents).and_then(|(noises, tangents)| self.left_open(&left, &stiff, noises, &tangents));
-        if let Some(open) = open {
-            for (own, delta) in own.iter_mut().zip(of_told(&delta)) {
-                let columns = delta * &open;
-                told.iter().enumerate().for_each(|(from, place)| own.set_column(*place, &columns.column(from)));
+        let sum = tangents.1.as_ref().filter(|_| !told.is_empty());
+        if let Some(open) = self.left_open(&left, &stiff, noises, sum, &told) {
+            for (free, delta) in freedom.delta.iter_mut().zip(&tangents.0) {
+                let (first, columns) = (free.ncols() - delta.ncols(), delta.select_columns(&told) * &open);
+                told.iter().zip(columns.column_iter()).for_each(|(place, own)| free.set_column(first + place, &own));
             }
         }
-        let both = stiff.sum.as_ref().zip(sum.as_ref()).zip(self.sum.as_ref());
-        Freedom {
-            sum: both.map(|((stiff, sum), channel)| stacked(stiff, &generous(sum, channel.sample))),
-            delta: stacked(&stiff.delta, &own),
-        }
+        freedom
     }
 
     /// How the sum of the frequencies leaves parameters open that it tells of: a root of their covariance.
-    fn left_open(&self, left: &Left, stiff: &Freedom, noises: &Noises, tangents: &Columns) -> Option<DMatrix<f64>> {
+    fn left_open(
+        &self,
+        left: &Left,
+        stiff: &Freedom,
+        noises: &Noises,
+        tangents: Option<&Columns>,
+        told: &[usize],
+    ) -> Option<DMatrix<f64>> {
+        let tangents: Columns = tangents?.iter().map(|run| run.select_columns(told)).collect();
         let bench = Bench::new(&self.layout, noises.sum?, left.sum.as_ref()?, stiff.sum.as_ref()?)?;
-        Some(bench.score(tangents).covariance()?.cholesky()?.unpack())
+        Some(bench.score(&tangents).covariance()?.cholesky()?.unpack())
     }
 
     /// `freedom`, and the parameters of effects that leave `left` beside others that are held.
     pub fn widened(&self, freedom: &Freedom, held: &Held, own: &Known, left: &Left) -> Freedom {
-        let (delta, sum) = self.tangents(held, own, left);
+        self.with_tangents(freedom, &self.tangents(held, own, left))
+    }
+
+    fn with_tangents(&self, freedom: &Freedom, (delta, sum): &(Columns, Option<Columns>)) -> Freedom {
         let both = freedom.sum.as_ref().zip(sum.as_ref()).zip(self.sum.as_ref());
         Freedom {
-            delta: stacked(&freedom.delta, &generous(&delta, self.sample_ug)),
+            delta: stacked(&freedom.delta, &generous(delta, self.sample_ug)),
             sum: both.map(|((freedom, sum), channel)| stacked(freedom, &generous(sum, channel.sample))),
         }
     }

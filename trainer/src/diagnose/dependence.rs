@@ -25,7 +25,7 @@ impl Case<'_> {
     /// How the residual follows each quantity, without and with the findings.
     pub fn dependences(&self, before: &Known, after: &Known, noises: &Noises, channels: &[String]) -> Vec<Dependence> {
         let bench = |known: &Known| {
-            let freedom = self.adapting(known, Some(noises)).delta;
+            let freedom = self.adapting(known, noises).delta;
             Some((Bench::new(&self.layout, noises.delta, &self.left(known).delta, &freedom)?, freedom))
         };
         let (Some(before), Some(after)) = (bench(before), bench(after)) else { return Vec::new() };

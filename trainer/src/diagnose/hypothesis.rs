@@ -14,7 +14,7 @@ const STEPS: usize = 12;
 /// The coefficients of `effect` beside `known` that fit best; none if there is no sign of it.
 pub(super) fn fitted(case: &Case, known: &Known, noises: &Noises, effect: &Chosen) -> Option<Vec<f64>> {
     let candidates = Candidate::all(case, std::slice::from_ref(effect));
-    let benches = case.benches(&case.left(known), &case.adapting(known, Some(noises)), noises)?;
+    let benches = case.benches(&case.left(known), &case.adapting(known, noises), noises)?;
     let screened = case.screen(&benches, known, &candidates).into_iter();
     let best = screened.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).filter(|best| best.evidence > ENOUGH)?;
     let (fitted, _) = case.refit(&case.held(known), &best.alone(), &benches, STEPS);

@@ -2,7 +2,7 @@
 
 use super::candidate::is_placed;
 use super::layout::{Cell, Layout, Stretch};
-use super::sum_channel::{Response, response};
+use super::sum_channel::is_told;
 use super::whitening::Columns;
 use crate::campaign::Row;
 use crate::expression::Expression;
@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::noise::{rms, sample_sigma_g};
 use crate::train::{HIDDEN_SIZE, OUTPUT_SIZE};
 use firmware_core::activation::{sigmoid, slope};
-use firmware_core::effect::{self, Role};
+use firmware_core::effect::{self, About, Role};
 use firmware_core::{Memory, Network, Scale};
 use nalgebra::DMatrix;
 use protocol::limits::{HIDDEN, MAX_PARAMETERS};
@@ -100,25 +100,30 @@ impl Known {
         })
     }
 
-    /// Those that sit at a place, and the others.
-    fn by_place(&self) -> (Self, Self) {
+    /// Those of which this is true, and the others.
+    fn split(&self, is: impl Fn(&About) -> bool) -> (Self, Self) {
         let mut both = (Self::NONE, Self::NONE);
-        for one in self.each() {
-            let side = if is_placed(one.effects[0].about) { &mut both.0 } else { &mut both.1 };
-            *side = side.and(&one);
+        for (effect, values) in self.effects.iter().zip(&self.coefficients.values) {
+            let side = if is(effect.about) { &mut both.0 } else { &mut both.1 };
+            side.effects.push(effect.clone());
+            side.coefficients.values.push(values.clone());
         }
         both
     }
 
     /// Of each free parameter, whether the sum of the frequencies tells of it.
     pub fn tells(&self) -> impl Iterator<Item = bool> {
-        self.effects.iter().flat_map(|effect| effect.free().map(|_| response(effect.about) == Response::Told))
+        self.effects.iter().flat_map(|effect| effect.free().map(|_| is_told(effect.about)))
     }
 
     /// Those whose deeds say what happens to the sum of the frequencies.
     pub fn told(&self) -> Self {
-        let told = self.each().filter(|one| response(one.effects[0].about) == Response::Told);
-        told.fold(Self::NONE, |all, one| all.with(&one.effects[0], &one.coefficients.values[0]))
+        self.split(is_told).0
+    }
+
+    /// Those that leave open what happens to it.
+    pub fn untold(&self) -> Self {
+        self.split(is_told).1
     }
 
     /// These but the one at `index`.
@@ -152,7 +157,7 @@ impl Instrument {
 
     /// What the effects do in each cell.
     pub fn deeds(&self, layout: &Layout, known: &Known) -> Deeds {
-        let (placed, others) = known.by_place();
+        let (placed, others) = known.split(is_placed);
         let of = |stretch: &Stretch| {
             let course = |rows: &[Row], known: &Known| {
                 let some = !known.effects.is_empty();

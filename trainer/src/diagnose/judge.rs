@@ -10,7 +10,7 @@ use super::layout::Layout;
 use super::left::Held;
 use super::noise_search::first_guess;
 use super::observable::{Screening, unobservable};
-use super::search::{Contender, Found, LOWERED, freedom_of};
+use super::search::{Contender, Found, LOWERED};
 use super::separation::separate;
 use super::sum_channel::SumChannel;
 use super::telltale::Telltale;
@@ -48,14 +48,14 @@ pub(super) fn judge(model: &Model, campaign: &Campaign, progress: &dyn Progress)
     case.layout.remember(&start);
     if !start.effects.is_empty() {
         // What retraining would make of the effects that the model has is not missing.
-        let noises = case.noises(&case.left(&start), &case.adapting(&start, None), None);
+        let noises = case.noises(&case.left(&start), &case.loose(&start), None);
         let benches = case.benches(&case.left(&start), &case.stiff(&start), &noises).ok_or(DiagnoseError::NoNoise)?;
         (start, _) = case.refit(&case.bare, &start, &benches, LAST_STEPS);
         case.layout.remember(&start);
     }
     let shown = with_channels(campaign);
     let candidates = Candidate::all(&case, &shown);
-    let noises = case.noises(&case.left(&start), &case.adapting(&start, None), None);
+    let noises = case.noises(&case.left(&start), &case.loose(&start), None);
     let screening = Screening::new(&case, &start, candidates, &noises).ok_or(DiagnoseError::NoNoise)?;
     let mut found = search(&mut case, &start, &screening.visible, noises, progress)?;
     if let Some(foreseen) = foreseen(&mut case, &start, &found, &screening.visible) {
@@ -194,7 +194,7 @@ fn prune(case: &mut Case, start: &Known, found: &mut Findings) -> Option<Vec<Str
         let (with, _) = deviance(&found.known)?;
         let least = |step: usize| {
             let (without, known) = deviance(&found.known.without(start.effects.len() + step))?;
-            let price = case.price() * freedom_of(&found.steps[step].winner.effect) as f64;
+            let price = case.price() * found.steps[step].winner.effect.free().count() as f64;
             Some((without - with - price, step, known))
         };
         let all: Vec<_> = (0..found.steps.len() - 1).map(least).collect::<Option<_>>()?;
@@ -219,7 +219,7 @@ fn foreseen(case: &mut Case, start: &Known, found: &Findings, candidates: &[Cand
     let step = case.foreseen(start, candidates, &found.noises)?;
     let known = start.with(&step.winner.effect, &step.winner.values);
     case.layout.remember(&known);
-    let noises = case.noises(&case.left(&known), &case.adapting(&known, Some(&found.noises)), Some(&found.noises));
+    let noises = case.noises(&case.left(&known), &case.adapting(&known, &found.noises), Some(&found.noises));
     Some(Findings { known, steps: vec![step], noises, strained: f64::NEG_INFINITY, formula: None })
 }
 

@@ -53,7 +53,8 @@ impl Case<'_> {
         let told = known.told();
         let sum = match &self.sum {
             Some(channel) if !told.effects.is_empty() => {
-                let own = self.instrument.deeds(&self.layout, &told);
+                let all_told = told.effects.len() == known.effects.len();
+                let own = if all_told { own } else { self.instrument.deeds(&self.layout, &told) };
                 Some(channel.residual_under(&self.layout, &[&held.told, &own]))
             }
             _ => held.left.sum.clone(),

@@ -23,7 +23,7 @@ const NOTHING_UG: f64 = 1e-9;
 impl Screening {
     /// Sorts the candidates; `None` if the noise makes no sense.
     pub fn new(case: &Case, known: &Known, candidates: Vec<Candidate>, noises: &Noises) -> Option<Self> {
-        let benches = case.benches(&case.left(known), &case.adapting(known, Some(noises)), &noises.small())?;
+        let benches = case.benches(&case.left(known), &case.adapting(known, noises), &noises.small())?;
         let columns: Vec<_> = candidates.iter().map(|candidate| &candidate.columns).collect();
         let left = benches.delta.shares_left(&columns);
         let (mut visible, mut seen, mut shares) = (Vec::new(), Vec::new(), Vec::new());

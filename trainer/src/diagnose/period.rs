@@ -79,7 +79,7 @@ impl Case<'_> {
     /// The residual sample by sample, what the instrument's freedom makes of it taken out; white but for what swings.
     fn courses(&self, known: &Known, noises: &Noises) -> Option<Vec<Course>> {
         let noise = noises.delta.calm();
-        let (left, freedom) = (self.left(known).delta, self.adapting(known, Some(noises)).delta);
+        let (left, freedom) = (self.left(known).delta, self.adapting(known, noises).delta);
         let adapted = Bench::new(&self.layout, noise, &left, &freedom)?.adapted(&left, &freedom);
         let fine = self.layout.by_sample();
         let mut values: Columns = self.instrument.residual_ug(&fine, &self.instrument.deeds(&fine, known));

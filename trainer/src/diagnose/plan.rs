@@ -243,7 +243,7 @@ impl Start {
 
     /// Squared distances of all pairs in these measurements, σ².
     fn measured(&self, case: &Case, channels: &[String]) -> Result<Vec<f64>, DiagnoseError> {
-        let benches = case.benches(&case.left(&self.known), &case.adapting(&self.known, None), &self.noises);
+        let benches = case.benches(&case.left(&self.known), &case.loose(&self.known), &self.noises);
         let benches = benches.ok_or(DiagnoseError::NoNoise)?;
         let foretold = |one: &Hypothetical| Some(Foretold::new(case, &self.known, &one.among(channels)?));
         let foretold: Vec<Option<Foretold>> = self.hypotheticals.iter().map(foretold).collect();

@@ -5,7 +5,7 @@ use super::case::{Benches, Case, Freedom, Noises};
 use super::evidence::{Bench, Score, difference};
 use super::instrument::Known;
 use super::left::{Held, Left};
-use super::sum_channel::{Response, response};
+use super::sum_channel::{Response, is_told, response};
 use super::whitening::Columns;
 use crate::fit::effects::Chosen;
 use firmware_core::effect::Role;
@@ -134,11 +134,6 @@ fn best_of_each(order: Vec<Contender>) -> Vec<Contender> {
     best
 }
 
-/// Parameters that a fit chooses.
-pub(super) fn freedom_of(effect: &Chosen) -> usize {
-    effect.about.parameters.iter().filter(|about| about.role != Role::Origin).count()
-}
-
 impl Case<'_> {
     /// What each parameter costs: the logarithm of the number of cells, as of Schwarz 1978.
     pub fn price(&self) -> f64 {
@@ -177,7 +172,7 @@ impl Case<'_> {
         let noises = contender.noises.as_ref()?;
         let with = known.with(&contender.effect, &contender.values);
         let case = self.remembering(&with);
-        let freedom = case.adapting(known, Some(noises)).delta;
+        let freedom = case.adapting(known, noises).delta;
         let fitted =
             |known: &Known| Some(Bench::new(&case.layout, noises.delta, &case.left(known).delta, &freedom)?.deviance);
         let gain = fitted(known)? - fitted(&with)?;
@@ -191,7 +186,7 @@ impl Case<'_> {
     /// The effect with which what was left out is foretold far better than without, wherever a wander that large hides
     /// what likelihood could say. The noise is taken to be small, so that effects compete with effects and not with it.
     pub fn foreseen(&self, known: &Known, candidates: &[Candidate], noises: &Noises) -> Option<Found> {
-        let (left, freedom, held) = (self.left(known), self.adapting(known, Some(noises)), self.held(known));
+        let (left, freedom, held) = (self.left(known), self.adapting(known, noises), self.held(known));
         let small = noises.small();
         let benches = self.benches(&left, &freedom, &small)?;
         let mut screened = self.screen(&benches, known, candidates);
@@ -206,7 +201,7 @@ impl Case<'_> {
             let after = self.held_out(&known.with(&contender.effect, &values), &small);
             let ratio = after.structure_ug() / before.structure_ug();
             // Every part that was left out counts once, however many samples it has.
-            let price = (before.parts as f64).ln() * freedom_of(&contender.effect) as f64;
+            let price = (before.parts as f64).ln() * contender.effect.free().count() as f64;
             let evidence = -2.0 * before.parts as f64 * ratio.ln() - price;
             (ratio, Contender { values, evidence, noises: Some(small), ..contender })
         });
@@ -223,7 +218,7 @@ impl Case<'_> {
     }
 
     fn scene(&self, known: &Known, noises: &Noises) -> Option<Scene> {
-        let (left, freedom, held) = (self.left(known), self.adapting(known, Some(noises)), self.held(known));
+        let (left, freedom, held) = (self.left(known), self.adapting(known, noises), self.held(known));
         let noises = self.noises(&left, &freedom, Some(noises));
         let deviance = self.benches(&left, &freedom, &noises)?.deviance();
         Some(Scene { held, left, freedom, noises, deviance })
@@ -246,7 +241,7 @@ impl Case<'_> {
 
     /// Fits an effect's parameters and the noise in turn, and says how likely that makes what was measured.
     fn contend(&self, scene: &Scene, known: &Known, contender: Contender) -> Option<Contender> {
-        let told = response(contender.effect.about) == Response::Told;
+        let told = is_told(contender.effect.about);
         let (mut own, mut noises) = (contender.alone(), scene.noises);
         let mut case = self.remembering(&known.and(&own));
         for _ in 0..TURNS {
@@ -279,7 +274,7 @@ impl Case<'_> {
         let values = own.coefficients.values.concat();
         // Neither side may profit from a noise that was searched for longer.
         let without = case.benches(&scene.left, &scene.freedom, &noises)?.deviance().min(scene.deviance);
-        let evidence = without - deviance - self.price() * freedom_of(&contender.effect) as f64;
+        let evidence = without - deviance - self.price() * contender.effect.free().count() as f64;
         Some(Contender { values, evidence, noises: Some(noises), ..contender })
     }
 
@@ -334,7 +329,7 @@ impl Case<'_> {
             }
             score.gain()
         };
-        let evidence = gain - self.price() * freedom_of(&candidate.effect) as f64;
+        let evidence = gain - self.price() * candidate.effect.free().count() as f64;
         Contender { effect: candidate.effect.clone(), values, evidence, noises: None }
     }
 

@@ -39,6 +39,11 @@ pub(super) fn response(about: &About) -> Response {
     }
 }
 
+/// Whether the deeds of this effect say what happens to the sum.
+pub(super) fn is_told(about: &About) -> bool {
+    response(about) == Response::Told
+}
+
 /// The measured sum in cells.
 #[derive(Clone)]
 pub(super) struct SumChannel {

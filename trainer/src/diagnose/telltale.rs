@@ -57,7 +57,7 @@ const BENT: f64 = 0.5;
 impl Case<'_> {
     /// Everything that gives away something missing beside these effects, the surest first.
     pub fn telltales(&self, known: &Known, noises: &Noises, channels: &[String]) -> Vec<Telltale> {
-        let (left, freedom) = (self.left(known).delta, self.adapting(known, Some(noises)).delta);
+        let (left, freedom) = (self.left(known).delta, self.adapting(known, noises).delta);
         let scene = Scene { case: self, noise: noises.delta, left: &left };
         let Some(instrument) = scene.free(&freedom) else { return Vec::new() };
         let mut suspects = self.structures();
@@ -77,7 +77,7 @@ impl Case<'_> {
 
     /// Most evidence of a structure of a size that matters, which no known effect has, where these effects are at work.
     pub fn strangest(&self, known: &Known, noises: &Noises) -> f64 {
-        let (left, freedom) = (self.left(known).delta, self.adapting(known, Some(noises)).delta);
+        let (left, freedom) = (self.left(known).delta, self.adapting(known, noises).delta);
         let scene = Scene { case: self, noise: noises.delta, left: &left };
         let Some(instrument) = scene.free(&freedom) else { return f64::NEG_INFINITY };
         let mut structures = self.structures();

@@ -6,7 +6,8 @@
 //! that. The noise is a sum of states that a Kalman filter tracks; its innovations are white, and every column
 //! that goes through the same filter can be compared by plain least squares.
 
-use super::filter::{self, Kind, Pass, State};
+use super::abreast::Kind;
+use super::filter::{self, Pass, State};
 use super::layout::{Layout, SLOWEST, Stretch};
 use nalgebra::DMatrix;
 use rayon::prelude::*;

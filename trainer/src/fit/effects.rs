@@ -60,7 +60,11 @@ impl Chosen {
 
     /// The parameters that a fit chooses.
     pub(crate) fn free(&self) -> impl Iterator<Item = &'static Parameter> {
-        self.about.parameters.iter().filter(|about| self.fixed(about).is_none())
+        self.about.parameters.iter().filter(|about| self.is_free(about))
+    }
+
+    fn is_free(&self, parameter: &Parameter) -> bool {
+        self.fixed(parameter).is_none()
     }
 
     /// The optimiser's parameter for a coefficient's value, and back.
@@ -104,7 +108,7 @@ impl Coefficients {
     pub fn to_parameters(&self, effects: &[Chosen]) -> Vec<f64> {
         let mut parameters = Vec::new();
         for (effect, values) in effects.iter().zip(&self.values) {
-            let free = effect.about.parameters.iter().zip(values).filter(|(about, _)| effect.fixed(about).is_none());
+            let free = effect.about.parameters.iter().zip(values).filter(|(about, _)| effect.is_free(about));
             parameters.extend(free.map(|(about, value)| effect.parameter_of(about, *value)));
         }
         parameters
