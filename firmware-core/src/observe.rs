@@ -84,6 +84,8 @@ pub struct Clock {
     last_gap_us: u64,
 }
 
+/// A longest gap of more than an hour and eleven minutes has no room in a calibration: it stands for any.
+const ANY_GAP_US: u64 = u32::MAX as u64;
 /// So many times the interval before make an interval a pause.
 const PAUSE: u64 = 3;
 
@@ -101,7 +103,7 @@ pub enum Step {
 }
 
 impl Clock {
-    /// A clock that calls samples more than `max_gap_us` apart unrelated.
+    /// A clock that calls samples more than `max_gap_us` apart unrelated; with the largest value none that comes later.
     #[must_use]
     pub const fn new(max_gap_us: u32) -> Self {
         Self { max_gap_us: max_gap_us as u64, last: None, last_gap_us: u64::MAX }
@@ -124,7 +126,8 @@ impl Clock {
         };
         let gap_us = sample.time_us.abs_diff(last.time_us);
         let forward = sample.time_us > last.time_us;
-        match (forward, gap_us > self.max_gap_us) {
+        let related = forward && self.max_gap_us == ANY_GAP_US;
+        match (forward, gap_us > self.max_gap_us && !related) {
             (true, false) if gap_us / PAUSE > self.last_gap_us => (Step::Paused(gap_us), Status::empty()),
             (true, false) => (Step::Forward(gap_us), Status::empty()),
             (true, true) => (Step::Anew, Status::STALE),
@@ -149,6 +152,24 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn with_the_largest_gap_whatever_comes_later_is_a_pause_and_a_clock_set_back_still_starts_anew() {
+        let mut clock = Clock::new(u32::MAX);
+        let hour_us = 3_600_000_000;
+        let table = [
+            (100 * hour_us, Step::Anew, Status::empty()),
+            (100 * hour_us + 1000, Step::Forward(1000), Status::empty()),
+            (103 * hour_us + 1000, Step::Paused(3 * hour_us), Status::empty()),
+            (102 * hour_us + 1000, Step::Held, Status::TIME_REVERSED),
+            (hour_us, Step::Anew, Status::TIME_REVERSED),
+        ];
+        for (time_us, step, status) in table {
+            let sample = Sample::from_difference(time_us, 0, 0);
+            assert_eq!(clock.step(&sample), (step, status), "at {time_us} µs");
+            clock.pass(&sample, step);
+        }
+    }
 
     #[test]
     fn the_clock_tells_samples_pauses_and_beginnings_apart() {

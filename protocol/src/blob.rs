@@ -76,7 +76,7 @@ pub struct Domain {
 /// The sampling that the memories assume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Timing {
-    /// Longest time between samples across which a memory is carried on, µs.
+    /// Longest time between samples across which a memory is carried on, µs; [`u32::MAX`] means any.
     pub max_gap_us: u32,
 }
 

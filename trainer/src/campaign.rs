@@ -179,6 +179,20 @@ impl Campaign {
     }
 }
 
+/// Across this many sampling intervals, what a sensor remembers is carried.
+const GAP_INTERVALS: f64 = 30.0;
+
+impl Campaign {
+    /// How long nobody may look before what the sensor remembers counts as lost, µs: many regular intervals, and the
+    /// longest pause within a run, as a run is one course of events whose soaks need not be recorded.
+    #[must_use]
+    pub fn max_gap_us(&self) -> u32 {
+        let slowest_s = self.runs.iter().filter_map(Run::sample_interval_s).fold(1.0, f64::max);
+        let longest_us = self.runs.iter().flat_map(Run::steps_us).max().unwrap_or_default();
+        (slowest_s * GAP_INTERVALS * 1e6).max(longest_us as f64).min(f64::from(u32::MAX)) as u32
+    }
+}
+
 impl Run {
     /// Time from the first row to the last, s.
     #[must_use]
@@ -189,11 +203,15 @@ impl Run {
         }
     }
 
+    /// Times between rows, µs.
+    fn steps_us(&self) -> impl Iterator<Item = u64> {
+        self.rows.windows(2).map(|pair| pair[1].sample.time_us.saturating_sub(pair[0].sample.time_us))
+    }
+
     /// Median time between rows, s; `None` of a run with fewer than two rows.
     #[must_use]
     pub fn sample_interval_s(&self) -> Option<f64> {
-        let mut steps_us: Vec<u64> =
-            self.rows.windows(2).map(|pair| pair[1].sample.time_us.saturating_sub(pair[0].sample.time_us)).collect();
+        let mut steps_us: Vec<u64> = self.steps_us().collect();
         if steps_us.is_empty() {
             return None;
         }

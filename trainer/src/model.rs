@@ -98,7 +98,7 @@ pub struct ModelDomain {
     pub delta_f_uhz: [i64; 2],
     /// Lowest and highest temperature, µ°C.
     pub temperature_uc: [i32; 2],
-    /// Longest gap between samples across which memories are carried, µs.
+    /// Longest gap between samples across which memories are carried, µs; [`u32::MAX`] means any.
     pub max_gap_us: u32,
 }
 

@@ -14,7 +14,7 @@ use super::judge::{case, in_model};
 use super::planned::joint;
 use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, PARTS, POSE, POSITION, RUN, TURN, WALK, WANDER};
 use super::{DiagnoseError, candidate::with_channels};
-use crate::campaign::{Campaign, Quantity, Run};
+use crate::campaign::{Campaign, Quantity};
 use crate::fit::effects::Chosen;
 use crate::model::Model;
 use crate::progress::Progress;
@@ -177,8 +177,8 @@ pub fn plan(
         }
         let joint = joint(model, campaign, &recording.campaign);
         let mut new = case(model, &joint)?;
-        // The next training will know how coarsely the recording is sampled.
-        new.layout.max_gap_us = new.layout.max_gap_us.max(coarse_us(&recording.campaign));
+        // The next training will know how coarsely the recording is sampled, and how long its pauses are.
+        new.layout.max_gap_us = new.layout.max_gap_us.max(recording.campaign.max_gap_us());
         // Planned rows have no noise to estimate it from.
         new.sample_ug = old.sample_ug;
         if let (Some(new), Some(old)) = (&mut new.sum, &old.sum) {
@@ -276,14 +276,6 @@ impl Start {
     }
 }
 
-/// The longest regular interval between rows and more, µs.
-fn coarse_us(campaign: &Campaign) -> u32 {
-    let slowest_s = campaign.runs.iter().filter_map(Run::sample_interval_s).fold(0.0, f64::max);
-    (slowest_s * GAP_INTERVALS * 1e6).min(f64::from(u32::MAX)) as u32
-}
-
-/// As in training.
-const GAP_INTERVALS: f64 = 30.0;
 /// No recording is shorter, hours.
 const LEAST_HOURS: f64 = 0.1;
 

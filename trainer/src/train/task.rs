@@ -54,7 +54,7 @@ impl<'a> Task<'a> {
         let runs: Vec<&Run> = runs.into_iter().map(|(_, run)| run).collect();
         Ok(Self {
             effects: settings.effects.iter().map(|choice| choose(choice, campaign, &runs)).collect::<Result<_, _>>()?,
-            max_gap_us: max_gap_us(&runs),
+            max_gap_us: campaign.max_gap_us(),
             runs,
             data,
             scale,
@@ -142,12 +142,6 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Longer than any regular sampling of these runs, µs.
-fn max_gap_us(runs: &[&Run]) -> u32 {
-    let slowest_s = runs.iter().filter_map(|run| run.sample_interval_s()).fold(1.0, f64::max);
-    (slowest_s * GAP_INTERVALS * 1e6).min(f64::from(u32::MAX)) as u32
-}
-
 /// Finds the effect and its channel.
 pub(crate) fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) -> Result<Chosen, TrainError> {
     let about = effect::about(&choice.name).ok_or_else(|| TrainError::UnknownEffect(choice.name.clone()))?;
@@ -187,7 +181,7 @@ fn choose_expression(
     let text = choice.expression.as_deref().ok_or(TrainError::NoExpression)?;
     let expression = Some(Expression::parse(text, &campaign.channels)?);
     let chosen = Chosen { expression, ..Chosen::of(about) };
-    let course_g: Vec<f64> = runs.iter().flat_map(|run| chosen.course_g(run, max_gap_us(runs))).collect();
+    let course_g: Vec<f64> = runs.iter().flat_map(|run| chosen.course_g(run, campaign.max_gap_us())).collect();
     let mean_g = crate::metrics::mean(&course_g);
     let size = rms(&course_g);
     let scatter = rms(course_g.iter().map(|value_g| value_g - mean_g).collect::<Vec<_>>().iter());
@@ -210,8 +204,6 @@ fn fitted(effect: &Chosen, values: &[f64], campaign: &Campaign) -> ModelEffect {
     }
 }
 
-/// A sample is stale after this many sampling intervals.
-const GAP_INTERVALS: f64 = 30.0;
 /// Share of the half span by which the calibrated domain exceeds the training data.
 const DOMAIN_MARGIN: f64 = 0.02;
 /// What varies by less than this share of its size can't be told from the bias.
