@@ -21,6 +21,8 @@ pub struct Case {
     /// Whether rig and turn-on add their errors.
     pub rig: bool,
     pub hidden: Vec<Hidden>,
+    /// All effects at work, with their parameters.
+    pub effects: Effects,
     /// Standard deviation of the noise of one 1 Hz sample, µg.
     pub sample_ug: f64,
     /// All noise behind a perfect static compensation, µg.
@@ -56,7 +58,8 @@ impl Case {
         let hidden = hidden(&truth, seed)?;
         let sample_ug = sample_ug(&recording);
         let noise_floor_ug = truth.noise_floor_ug;
-        Ok(Self { class, protocol, index, seed, rig, hidden, sample_ug, noise_floor_ug, recording, campaign })
+        let effects = truth.scenario.effects;
+        Ok(Self { class, protocol, index, seed, rig, hidden, effects, sample_ug, noise_floor_ug, recording, campaign })
     }
 
     /// The part of a hidden effect that counts, in units of the noise of one sample.

@@ -39,6 +39,7 @@ fn save(folder: &Path, case: &Case) -> std::io::Result<()> {
         "rig": case.rig,
         "seed": case.seed,
         "sample_ug": case.sample_ug,
+        "effects": case.effects,
     });
     write(path, format!("{truth:#}\n"))
 }
