@@ -37,7 +37,10 @@ const SHAPES: usize = 14;
 const SHAPES_OF_SEVERAL: usize = 6;
 /// How far 1 g moves a place, as shares of how far it moves one of the forks: less or more where what the fork meets follows
 /// the temperature too.
-const SHIFTS: [f64; 7] = [-1.7, -1.2, -0.8, 0.0, 0.8, 1.2, 1.7];
+const SHIFTS: [f64; 5] = [-1.7, -1.0, 0.0, 1.0, 1.7];
+/// Most shifts to either side that are compared at one place, and the least level that a place is moved by, g.
+const MOST_SHIFTS: f64 = 60.0;
+const LEAST_G: f64 = 0.1;
 /// Widths of an effect that sits at a place, °C.
 const WIDTHS: [f64; 3] = [0.7, 2.0, 6.0];
 
@@ -50,6 +53,26 @@ impl Candidate {
             .flat_map(|effect| shapes(effect, case).into_iter().map(|values| (effect.clone(), values)))
             .collect();
         shapes.into_par_iter().map(|(effect, values)| Self::new(case, &still, effect, values)).collect()
+    }
+
+    /// An effect that sits at a place, at that place and width, moved by the level in each way that its width tells apart.
+    pub fn shifted(case: &Case, effect: &Chosen, values: &[f64]) -> Vec<Self> {
+        let Some(shift) = effect.about.parameters.iter().position(|about| about.unit == "°C/g") else {
+            return Vec::new();
+        };
+        let most_g = case.layout.cells().map(|cell| cell.level_g.abs()).fold(LEAST_G, f64::max);
+        let most_c_per_g = SHIFTS.into_iter().fold(0.0, f64::max) * case.shift_c_per_g();
+        let step_c_per_g = width_c(effect.about, values) * PLACE_STEP / most_g;
+        let count = (most_c_per_g / step_c_per_g).ceil().min(MOST_SHIFTS);
+        let still = case.left(&Known::NONE);
+        let at = |k: i32| {
+            let mut values = values.to_vec();
+            amplitudes(effect.about).into_iter().for_each(|index| values[index] = unit(effect, index));
+            let about = &effect.about.parameters[shift];
+            values[shift] = (f64::from(k) / count * most_c_per_g).clamp(about.low, about.high);
+            Self::new(case, &still, effect.clone(), values)
+        };
+        (-count as i32..=count as i32).into_par_iter().map(at).collect()
     }
 
     fn new(case: &Case, still: &Left, effect: Chosen, values: Vec<f64>) -> Self {
@@ -67,6 +90,11 @@ impl Candidate {
         let sum = (!sums.is_empty()).then(|| joined(&sums));
         Self { effect, values, amplitudes, columns: joined(&columns), sum }
     }
+}
+
+/// The size at which the amplitude at `index` is tried.
+fn unit(effect: &Chosen, index: usize) -> f64 {
+    if effect.expression.is_some() { FORMULA_UNIT } else { effect.about.parameters[index].high * UNIT }
 }
 
 /// Indices of the amplitudes among an effect's parameters.
@@ -116,8 +144,7 @@ fn shapes(effect: &Chosen, case: &Case) -> Vec<Vec<f64>> {
     let mut found = vec![Vec::new()];
     for about in effect.about.parameters {
         let choices = |before: &[f64]| match about.role {
-            Role::Amplitude if effect.expression.is_some() => vec![FORMULA_UNIT],
-            Role::Amplitude => vec![about.high * UNIT],
+            Role::Amplitude => vec![unit(effect, before.len())],
             Role::Shape if effect.expression.as_ref().is_some_and(|expression| expression.leaves_idle(about)) => {
                 vec![about.start]
             }

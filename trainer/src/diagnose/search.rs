@@ -234,7 +234,7 @@ impl Case<'_> {
             let passes = |contender: &Contender| names.iter().take(most).any(|name| name.is_same_effect(contender));
             let is_new = |contender: &Contender| chosen.iter().all(|other| !other.is_same_start(contender));
             let next: Vec<Contender> = screened.into_iter().filter(|one| passes(one) && is_new(one)).collect();
-            chosen.extend(next);
+            chosen.extend(next.into_iter().map(|contender| self.shifted(&benches, contender)));
         }
         Some(chosen)
     }
@@ -317,6 +317,14 @@ impl Case<'_> {
             }
         }
         best
+    }
+
+    /// The same, moved by the level as suits it best: the grid of places is too coarse for that.
+    fn shifted(&self, benches: &Benches, contender: Contender) -> Contender {
+        let candidates = Candidate::shifted(self, &contender.effect, &contender.values);
+        let columns: Vec<&Columns> = candidates.iter().map(|candidate| &candidate.columns).collect();
+        let judged = candidates.iter().zip(benches.delta.scores(&columns)).map(|(one, score)| self.judged(one, &score));
+        judged.fold(contender, |best, next| if next.evidence > best.evidence { next } else { best })
     }
 
     fn judged(&self, candidate: &Candidate, score: &Score) -> Contender {
