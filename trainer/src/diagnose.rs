@@ -14,6 +14,7 @@
 
 mod abreast;
 mod answer;
+mod beginning;
 mod candidate;
 mod case;
 mod dependence;

@@ -22,16 +22,16 @@ pub(super) enum Kind {
     Turning,
     /// A random walk.
     Walk,
-    /// As much as is left of what effects brought along.
-    Beginning,
+    /// As much as is left of what the effect at a place brought along, from one of two ends.
+    Beginning(usize, usize),
 }
 
 /// One cell of each of `L` runs, as the filter sees them; of a run that has ended nothing is seen, and all is kept.
-pub(super) struct Abreast<const L: usize> {
+pub(super) struct Abreast<'a, const L: usize> {
+    cells: [Option<&'a Cell>; L],
     /// 1, or 0 of a run that has ended.
     present: [f64; L],
     cross_g: [f64; L],
-    beginning: [f64; L],
     /// 0 where the sensor was moved, or the chamber was sent elsewhere.
     same_position: [f64; L],
     same_node: [f64; L],
@@ -42,11 +42,11 @@ pub(super) struct Abreast<const L: usize> {
     pub own: [f64; L],
 }
 
-impl<const L: usize> Abreast<L> {
+impl<'a, const L: usize> Abreast<'a, L> {
     const ENDED: Self = Self {
+        cells: [None; L],
         present: [0.0; L],
         cross_g: [0.0; L],
-        beginning: [0.0; L],
         same_position: [1.0; L],
         same_node: [1.0; L],
         unfaded: [[1.0; L]; WANDER_TAUS_S.len()],
@@ -55,12 +55,11 @@ impl<const L: usize> Abreast<L> {
     };
 
     /// These cells.
-    pub fn new(noise: &NoiseModel, cells: [Option<&Cell>; L]) -> Self {
-        let mut all = Self::ENDED;
+    pub fn new(noise: &NoiseModel, cells: [Option<&'a Cell>; L]) -> Self {
+        let mut all = Self { cells, ..Self::ENDED };
         for (lane, cell) in cells.iter().enumerate().filter_map(|(lane, cell)| cell.map(|cell| (lane, cell))) {
             all.present[lane] = 1.0;
             all.cross_g[lane] = cell.cross_g;
-            all.beginning[lane] = cell.beginning;
             all.same_position[lane] = f64::from(u8::from(!cell.new_position));
             all.same_node[lane] = f64::from(u8::from(!cell.new_node));
             all.unfaded.iter_mut().zip(&cell.unfaded).for_each(|(all, unfaded)| all[lane] = *unfaded);
@@ -74,7 +73,7 @@ impl<const L: usize> Abreast<L> {
     pub fn seen(&self, kind: Kind) -> [f64; L] {
         match kind {
             Kind::Mounting | Kind::Position | Kind::Turning => self.cross_g,
-            Kind::Beginning => self.beginning,
+            Kind::Beginning(place, end) => self.cells.map(|cell| cell.map_or(0.0, |cell| cell.beginnings[place][end])),
             _ => self.present,
         }
     }

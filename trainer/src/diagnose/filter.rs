@@ -8,6 +8,7 @@
 //! ```
 
 use super::abreast::{Abreast, Kind};
+use super::beginning::{BEGINNINGS, FORGOTTEN};
 use super::layout::{Cell, Stretch};
 use super::whitening::NoiseModel;
 use nalgebra::DMatrix;
@@ -135,6 +136,8 @@ pub(super) fn pass(noise: &NoiseModel, states: &[State], run: &Stretch) -> Box<d
         0..=4 => Box::new(Steps::of(Filter::<4, 1>::new(noise, states), run)),
         5..=6 => Box::new(Steps::of(Filter::<6, 1>::new(noise, states), run)),
         7..=8 => Box::new(Steps::of(Filter::<8, 1>::new(noise, states), run)),
+        9..=11 => Box::new(Steps::of(Filter::<11, 1>::new(noise, states), run)),
+        12..=15 => Box::new(Steps::of(Filter::<15, 1>::new(noise, states), run)),
         _ => Box::new(Steps::of(Filter::<MOST_STATES, 1>::new(noise, states), run)),
     }
 }
@@ -148,12 +151,14 @@ pub(super) fn deviance(noise: &NoiseModel, states: &[State], runs: &[(&Stretch, 
         0..=4 => deviance_by(Filter::<4, RUNS>::new(noise, states), runs),
         5..=6 => deviance_by(Filter::<6, RUNS>::new(noise, states), runs),
         7..=8 => deviance_by(Filter::<8, RUNS>::new(noise, states), runs),
+        9..=11 => deviance_by(Filter::<11, RUNS>::new(noise, states), runs),
+        12..=15 => deviance_by(Filter::<15, RUNS>::new(noise, states), runs),
         _ => deviance_by(Filter::<MOST_STATES, RUNS>::new(noise, states), runs),
     }
 }
 
-/// Most states.
-const MOST_STATES: usize = 11;
+/// Most states: ten whatever is known, and the beginnings of what is.
+const MOST_STATES: usize = 10 + BEGINNINGS * FORGOTTEN.len();
 
 /// So many variances are multiplied before their logarithm is taken.
 const FACTORS: usize = 8;
@@ -244,7 +249,7 @@ mod tests {
             samples: 1.0 + (index % 3) as f64,
             cross_g: 0.5 + index as f64 / 20.0,
             unseen_c: if index == 5 { 0.01 } else { 0.0 },
-            beginning: (-(index as f64)).exp(),
+            beginnings: [FORGOTTEN, [(-(index as f64)).exp(), 0.0], FORGOTTEN, FORGOTTEN],
             new_node: index == 6,
             new_position: index == 4 || index == 9,
             ..Cell::plain(index, time_s(index), since_s)
@@ -267,7 +272,7 @@ mod tests {
                 Kind::Turning => across * (-(one.time_s - other.time_s).abs() / WANDER_TAUS_S[SLOWEST]).exp(),
                 Kind::Fading(which) => (-(one.time_s - other.time_s).abs() / WANDER_TAUS_S[which]).exp(),
                 Kind::Walk => cell(first).time_s - cell(0).time_s,
-                Kind::Beginning => one.beginning * other.beginning,
+                Kind::Beginning(place, end) => one.beginnings[place][end] * other.beginnings[place][end],
             }
     }
 
@@ -283,7 +288,7 @@ mod tests {
             (Kind::Mounting, 40.0),
             (Kind::Pose, 12.0),
             (Kind::Fading(SLOWEST), 7.0),
-            (Kind::Beginning, 60.0),
+            (Kind::Beginning(1, 0), 60.0),
             (Kind::Fading(1), 4.0),
             (Kind::Turning, 30.0),
         ];

@@ -6,7 +6,7 @@ use super::candidate::{Candidate, name_of, with_channels};
 use super::case::{Case, Noises};
 use super::evidence::{Score, compressed};
 use super::instrument::{Instrument, Known};
-use super::layout::Layout;
+use super::layout::{Cell, Layout};
 use super::left::Held;
 use super::noise_search::first_guess;
 use super::observable::{Screening, unobservable};
@@ -162,13 +162,17 @@ fn search(
             found.formula = Some(next.winner);
             break;
         }
-        if next.winner.evidence < WEAK && case.strangest(&found.known, &next.noises) > next.winner.evidence {
-            // Something that no known effect does is more likely: the effect merely resembles it.
+        let noises = next.winner.noises.unwrap_or(found.noises);
+        let known = found.known.with(&next.winner.effect, &next.winner.values);
+        let is_stranger = |case: &Case, known, noises| case.strangest(known, noises) > next.winner.evidence;
+        if next.winner.evidence < WEAK
+            && is_stranger(case, &found.known, &next.noises)
+            && is_stranger(&case.remembering(&known), &known, &noises)
+        {
+            // Something that no known effect does is more likely, with this one too: it merely resembles it.
             found.noises = next.noises;
             break;
         }
-        let noises = next.winner.noises.unwrap_or(found.noises);
-        let known = found.known.with(&next.winner.effect, &next.winner.values);
         case.layout.remember(&known);
         let benches = case.benches(&case.left(&known), &case.stiff(&known), &noises).ok_or(DiagnoseError::NoNoise)?;
         (found.known, _) = case.refit(&case.bare, &known, &benches, LAST_STEPS);
@@ -205,6 +209,8 @@ fn prune(case: &mut Case, start: &Known, found: &mut Findings) -> Option<Vec<Str
         dropped.push(name_of(&found.steps.remove(step).winner.effect).to_owned());
         found.known = known;
         case.layout.remember(&found.known);
+        let (left, freedom) = (case.left(&found.known), case.adapting(&found.known, &found.noises));
+        found.noises = case.noises(&left, &freedom, Some(&found.noises));
     }
     Some(dropped)
 }
@@ -314,7 +320,11 @@ fn parameters(known: &Known, sigmas: &[Vec<f64>], at: usize) -> BTreeMap<String,
 
 /// Share of the square above what no model can remove.
 fn explainable(case: &Case, before_ug: f64, after_ug: f64, noise: &NoiseModel) -> f64 {
-    let brought_along_ug = case.rms_ug(&case.columns(|_, _, cell| [cell.beginning * noise.parts[BEGINNING]]));
+    let brought_along = |cell: &Cell| {
+        let each = cell.beginnings.iter().zip(&noise.parts[BEGINNING..]);
+        each.map(|(left, sigma)| left.iter().sum::<f64>() * sigma).fold(0.0, f64::hypot)
+    };
+    let brought_along_ug = case.rms_ug(&case.columns(|_, _, cell| [brought_along(cell)]));
     let parts = noise.parts.iter().take(WALK).map(|sigma| sigma * sigma).sum::<f64>() + brought_along_ug.powi(2);
     let excess = before_ug.powi(2) - (noise.sample.powi(2) + parts).min(after_ug.powi(2));
     if excess > 0.0 { ((before_ug.powi(2) - after_ug.powi(2)) / excess).clamp(0.0, 1.0) } else { 0.0 }

@@ -1,5 +1,6 @@
 //! The campaign as a diagnosis sees it: cells of neighbouring samples, run by run, with what noise may depend on.
 
+use super::beginning::{self, BEGINNINGS, Beginning, FORGOTTEN};
 use super::gathered::Gathered;
 use super::instrument::Known;
 use crate::campaign::{Campaign, Run};
@@ -31,8 +32,8 @@ pub(super) struct Cell {
     pub cross_g: f64,
     /// How far the temperature may have gone astray unseen: coarse sampling of a bent course, or a beginning under way, °C.
     pub unseen_c: f64,
-    /// Share of what effects with a memory brought along that is still there.
-    pub beginning: f64,
+    /// Of what effects with a memory brought along, how much is still there.
+    pub beginnings: [Beginning; BEGINNINGS],
     /// Whether the chamber was sent elsewhere, or arrived there, since the cell before.
     pub new_node: bool,
     /// Whether the sensor was moved since the cell before.
@@ -54,7 +55,7 @@ impl Cell {
             level_g: 0.0,
             cross_g: 1.0,
             unseen_c: 0.0,
-            beginning: 0.0,
+            beginnings: [FORGOTTEN; BEGINNINGS],
             new_node: false,
             new_position: false,
         }
@@ -86,6 +87,8 @@ pub(super) struct Layout<'a> {
     pub scale: InputScale,
     /// Longest gap across which a memory is carried, µs.
     pub max_gap_us: u32,
+    /// Place and end of the beginnings that are there in any cell.
+    pub remembered: Vec<(usize, usize)>,
     /// Index of the channel that says what lies across the input axis.
     cross: Option<usize>,
 }
@@ -113,22 +116,27 @@ impl<'a> Layout<'a> {
         let cross = campaign.channels.iter().position(|channel| channel == CROSS_CHANNEL);
         let neighbours = Neighbours::of(&campaign.runs, &scale);
         let stretch = |run: &'a Run| Stretch::new(run, neighbours.cells(run), &scale, cross);
-        Self { stretches: campaign.runs.iter().map(stretch).collect(), scale, max_gap_us, cross }
+        let stretches = campaign.runs.iter().map(stretch).collect();
+        Self { stretches, scale, max_gap_us, remembered: Vec::new(), cross }
     }
 
     /// The same with a cell for every sample.
     pub fn by_sample(&self) -> Self {
         let rows = |run: &Run| (0..run.rows.len()).map(|row| row..row + 1).collect();
         let stretch = |one: &Stretch<'a>| Stretch::new(one.run, rows(one.run), &self.scale, self.cross);
-        Self { stretches: self.stretches.iter().map(stretch).collect(), ..*self }
+        Self { stretches: self.stretches.iter().map(stretch).collect(), remembered: Vec::new(), ..*self }
     }
 
     /// Marks how much of what the effects' memories brought along from before each run is still there.
     pub fn remember(&mut self, known: &Known) {
         for stretch in &mut self.stretches {
-            stretch.cells.iter_mut().for_each(|cell| cell.beginning = 0.0);
-            known.memories().for_each(|memory| brought_along(stretch, memory));
+            stretch.cells.iter_mut().for_each(|cell| cell.beginnings = [FORGOTTEN; BEGINNINGS]);
+            let memories = known.memories().filter(|memory| *memory != Memory::None);
+            memories.enumerate().for_each(|(at, memory)| beginning::mark(stretch, at.min(BEGINNINGS - 1), memory));
         }
+        let is_there = |(place, end): &(usize, usize)| self.cells().any(|cell| cell.beginnings[*place][*end] > 0.0);
+        let all = (0..BEGINNINGS).flat_map(|place| (0..FORGOTTEN.len()).map(move |end| (place, end)));
+        self.remembered = all.filter(is_there).collect();
     }
 
     /// Number of cells.
@@ -167,23 +175,6 @@ pub(super) fn across_g(level_g: f64) -> f64 {
     (1.0 - level_g * level_g).max(0.0).sqrt()
 }
 
-fn brought_along(stretch: &mut Stretch, memory: Memory<f64>) {
-    let temperature_c = |cell: &Cell| f64::from(stretch.run.rows[cell.rows.start].sample.temperature_uc) * 1e-6;
-    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for cell in &mut stretch.cells {
-        let still = match memory {
-            Memory::None => 0.0,
-            Memory::Lag { tau_s } => (-cell.time_s / tau_s).exp(),
-            Memory::Play { radius } => {
-                let temperature_c = temperature_c(cell);
-                (lowest, highest) = (lowest.min(temperature_c), highest.max(temperature_c));
-                (1.0 - (highest - lowest) / (2.0 * radius)).max(0.0)
-            }
-        };
-        cell.beginning = cell.beginning.max(still);
-    }
-}
-
 fn cells_of(run: &Run, rows: Vec<Range<usize>>, scale: &InputScale, cross: Option<usize>) -> Vec<Cell> {
     let start_us = run.rows.first().map_or(0, |row| row.sample.time_us);
     let mut found: Vec<Cell> = Vec::new();
@@ -207,7 +198,7 @@ fn cells_of(run: &Run, rows: Vec<Range<usize>>, scale: &InputScale, cross: Optio
             level_g,
             cross_g: cross_ug.map_or_else(|| across_g(level_g), |ug| ug as f64 * 1e-6),
             unseen_c: (rows.clone().map(|row| unseen_c(run, row).powi(2)).sum::<f64>() / datum.weight).sqrt(),
-            beginning: 0.0,
+            beginnings: [FORGOTTEN; BEGINNINGS],
             new_node: false,
             new_position: found.last().is_none_or(moved) || turned,
             rows,

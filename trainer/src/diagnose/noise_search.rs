@@ -36,8 +36,8 @@ pub(super) fn noise(
 
 fn search(layout: &Layout, residual: &Columns, start: NoiseModel, from: usize) -> NoiseModel {
     let deviance = |noise: &NoiseModel| noise.deviance(layout, residual);
-    let remembers = layout.cells().any(|cell| cell.beginning > 0.0);
-    let parts: Vec<usize> = (0..PARTS).filter(|&part| part != BEGINNING || remembers).collect();
+    let remembers = |place: usize| layout.remembered.iter().any(|(other, _)| *other == place);
+    let parts: Vec<usize> = (0..PARTS).filter(|&part| part < BEGINNING || remembers(part - BEGINNING)).collect();
     let mut best = (start, deviance(&start));
     for step in &STEPS[from..] {
         loop {

@@ -81,7 +81,8 @@ impl Case<'_> {
         let noise = noises.delta.calm();
         let (left, freedom) = (self.left(known).delta, self.adapting(known, noises).delta);
         let adapted = Bench::new(&self.layout, noise, &left, &freedom)?.adapted(&left, &freedom);
-        let fine = self.layout.by_sample();
+        let mut fine = self.layout.by_sample();
+        fine.remember(known);
         let mut values: Columns = self.instrument.residual_ug(&fine, &self.instrument.deeds(&fine, known));
         for (run, stretch) in self.layout.stretches.iter().enumerate() {
             for (index, cell) in stretch.cells.iter().enumerate() {

@@ -7,6 +7,7 @@
 //! that goes through the same filter can be compared by plain least squares.
 
 use super::abreast::Kind;
+use super::beginning::BEGINNINGS;
 use super::filter::{self, Pass, State};
 use super::layout::{Layout, SLOWEST, Stretch};
 use nalgebra::DMatrix;
@@ -27,7 +28,7 @@ pub(super) struct NoiseModel {
 }
 
 /// How many parts there are.
-pub(super) const PARTS: usize = 10;
+pub(super) const PARTS: usize = BEGINNING + BEGINNINGS;
 /// From run to run.
 pub(super) const RUN: usize = 0;
 /// From run to run, per g across the input axis.
@@ -42,12 +43,12 @@ pub(super) const FLICKER: usize = 4;
 pub(super) const WANDER: usize = 5;
 /// Random walk, per √s.
 pub(super) const WALK: usize = 6;
-/// What effects with a memory brought along from before the run.
-pub(super) const BEGINNING: usize = 7;
 /// From position to position, whatever acceleration lies across the input axis: no table does that.
-pub(super) const POSE: usize = 8;
+pub(super) const POSE: usize = 7;
 /// Wander within hours, per g across the input axis: at one level a rig stands in two ways, and nobody wrote down in which.
-pub(super) const TURN: usize = 9;
+pub(super) const TURN: usize = 8;
+/// What effects with a memory brought along from before the run: here the first's, then the others'.
+pub(super) const BEGINNING: usize = 9;
 
 /// A noise on its way through all runs, ready for any column.
 pub(super) struct Whitening {
@@ -70,7 +71,7 @@ const SMALL_WALK: f64 = 0.01;
 impl NoiseModel {
     /// What takes the noise's correlation out of columns.
     pub fn whitening(&self, layout: &Layout) -> Whitening {
-        let states = self.states();
+        let states = self.states(layout);
         let pass = |stretch: &Stretch| filter::pass(self, &states, stretch);
         let passes: Vec<_> = layout.stretches.par_iter().map(pass).collect();
         let log_det = passes.iter().map(|pass| pass.log_det()).sum();
@@ -79,7 +80,7 @@ impl NoiseModel {
 
     /// Minus twice the logarithm of the likelihood of one column, but for a constant.
     pub fn deviance(&self, layout: &Layout, column: &Columns) -> f64 {
-        let states = self.states();
+        let states = self.states(layout);
         let mut runs: Vec<_> = layout.stretches.iter().zip(column.iter().map(DMatrix::as_slice)).collect();
         // Runs of like length go together.
         runs.sort_by_key(|(stretch, _)| std::cmp::Reverse(stretch.cells.len()));
@@ -93,7 +94,7 @@ impl NoiseModel {
         let mut small = *self;
         small.parts.iter_mut().for_each(|part| *part = part.min(self.sample));
         small.parts[WALK] = small.parts[WALK].min(self.sample * SMALL_WALK);
-        small.parts[BEGINNING] = self.parts[BEGINNING];
+        small.parts[BEGINNING..].copy_from_slice(&self.parts[BEGINNING..]);
         small
     }
 
@@ -106,8 +107,8 @@ impl NoiseModel {
     }
 
     /// The states that make a difference.
-    fn states(&self) -> Vec<State> {
-        let [run, mounting, position, node, flicker, wander, walk, beginning, pose, turn] = self.parts;
+    fn states(&self, layout: &Layout) -> Vec<State> {
+        let [run, mounting, position, node, flicker, wander, walk, pose, turn, ..] = self.parts;
         let all = [
             (Kind::Constant, run),
             (Kind::Mounting, mounting),
@@ -117,7 +118,6 @@ impl NoiseModel {
             (Kind::Fading(1), flicker),
             (Kind::Fading(SLOWEST), wander),
             (Kind::Walk, walk * 60.0),
-            (Kind::Beginning, beginning),
             (Kind::Pose, pose),
             (Kind::Turning, turn),
         ];
@@ -127,7 +127,8 @@ impl NoiseModel {
             Kind::Walk => State { variance: state.variance / 3600.0, ..state },
             _ => state,
         };
-        all.into_iter().filter(matters).map(state).map(walk).collect()
+        let began = |&(place, end)| (Kind::Beginning(place, end), self.parts[BEGINNING + place]);
+        all.into_iter().chain(layout.remembered.iter().map(began)).filter(matters).map(state).map(walk).collect()
     }
 }
 
