@@ -61,6 +61,16 @@ fn rich_diagnosis(hidden: &[&str], times_noise: f64, seed: u64) -> Diagnosis {
     diagnose(&model(&campaign), &campaign, &Quiet).expect("a diagnosis")
 }
 
+/// The same of one effect at its usual size, or as it is changed to be.
+fn switched_on(effect: &str, change: impl FnOnce(&mut Scenario), seed: u64) -> Diagnosis {
+    let rich = Scenario::preset("rich").expect("a scenario");
+    let mut scenario = Scenario { effects: Default::default(), rig: rich.rig.without_errors(), ..rich };
+    scenario.effects.switch_on(effect, 1.0);
+    change(&mut scenario);
+    let campaign = played(&scenario, seed);
+    diagnose(&model(&campaign), &campaign, &Quiet).expect("a diagnosis")
+}
+
 fn named(diagnosis: &Diagnosis) -> Vec<&str> {
     diagnosis.findings.iter().map(|finding| finding.effect.as_str()).collect()
 }
@@ -165,6 +175,31 @@ fn what_a_run_brings_along_from_before_does_not_spoil_a_time_constant() {
     let found_h = diagnosis.findings[0].parameters["tau_h"];
     // Nobody knows how moist each run was in the beginning; taken for balance, that makes the time constant several times too short.
     assert!((found_h.value / truth_h).ln().abs() < 0.5, "{found_h:?} instead of {truth_h} h");
+}
+
+#[test]
+fn a_play_is_followed_through_soaks_of_two_hours_that_nobody_recorded() {
+    let diagnosis = switched_on("thermal-hysteresis", |_| {}, 21);
+    assert_eq!(named(&diagnosis), ["thermal-hysteresis"], "{diagnosis:#?}");
+    assert_eq!(diagnosis.verdict, Verdict::Missing, "{diagnosis:#?}");
+    assert!(diagnosis.unexplained.is_none(), "{diagnosis:#?}");
+    let parameters = &diagnosis.findings[0].parameters;
+    assert!((parameters["bias_g_per_c"].value / 10e-6 - 1.0).abs() < 0.01, "{parameters:?}");
+    assert!((parameters["half_width_c"].value / 10.0 - 1.0).abs() < 0.01, "{parameters:?}");
+}
+
+#[test]
+fn a_narrow_crossing_is_found_where_the_level_has_moved_it_to() {
+    let narrow = |scenario: &mut Scenario| {
+        scenario.effects.mode_crossing.as_mut().expect("switched on").width_k = 0.8;
+    };
+    let diagnosis = switched_on("mode-crossing", narrow, 22);
+    assert_eq!(named(&diagnosis), ["mode-crossing"], "{diagnosis:#?}");
+    let parameters = &diagnosis.findings[0].parameters;
+    assert!((parameters["crossing_c"].value - 30.0).abs() < 0.1, "{parameters:?}");
+    assert!((parameters["width_c"].value - 0.8).abs() < 0.05, "{parameters:?}");
+    // The first fork: 42 Hz/g and 2.4 Hz/°C.
+    assert!((parameters["shift_c_per_g"].value - 17.5).abs() < 0.5, "{parameters:?}");
 }
 
 #[test]

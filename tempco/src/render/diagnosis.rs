@@ -25,9 +25,30 @@ pub fn first_to_add(diagnosis: &Diagnosis) -> Option<&str> {
     diagnosis.findings.iter().map(|finding| finding.effect.as_str()).find(on_device)
 }
 
+/// How far the residual falls with the findings, and where to.
+fn falls(diagnosis: &Diagnosis, with: &str) -> String {
+    let Diagnosis { residual_ug, residual_after_ug, foreseeable_ug, foreseeable_after_ug, .. } = diagnosis;
+    let verb = if residual_after_ug < residual_ug { "falls" } else { "goes" };
+    // A run's own offset can be larger than all that a model can do about the rest.
+    let foreseeable = if foreseeable_ug == residual_ug {
+        String::new()
+    } else {
+        format!(
+            ";\nwithout what is new in every run (offset, mounting, what was brought along from before it) from \
+             {foreseeable_ug:.2} to {foreseeable_after_ug:.2} µg"
+        )
+    };
+    format!(
+        "{with}, the held-out residual {verb} from {residual_ug:.2} to {residual_after_ug:.2} µg{foreseeable}: {:.0} % of \
+         what exceeds the noise.\nNoise from sample to sample is {:.2} µg.",
+        diagnosis.explainable * 100.0,
+        diagnosis.noise_floor_ug
+    )
+}
+
 /// The answer in a sentence or two.
 pub fn verdict(diagnosis: &Diagnosis) -> String {
-    let Diagnosis { verdict, findings, residual_ug, residual_after_ug, noise_floor_ug, explainable, .. } = diagnosis;
+    let Diagnosis { verdict, findings, residual_ug, noise_floor_ug, .. } = diagnosis;
     let found: Vec<&str> = findings.iter().map(|finding| finding.effect.as_str()).collect();
     let with = match (verdict, found.len()) {
         (Verdict::Ambiguous, 1) => "With the first named",
@@ -35,11 +56,7 @@ pub fn verdict(diagnosis: &Diagnosis) -> String {
         (_, 1) => "With it",
         _ => "With them",
     };
-    let falls = format!(
-        "{with}, the held-out residual falls from {residual_ug:.2} to {residual_after_ug:.2} µg: {:.0} % of what exceeds \
-         the noise. Noise from sample to sample is {noise_floor_ug:.2} µg.",
-        explainable * 100.0
-    );
+    let falls = falls(diagnosis, with);
     let mut text = match verdict {
         Verdict::NothingMissing => format!(
             "Nothing is missing that this campaign could show: the held-out residual of {residual_ug:.2} µg is noise.\n\

@@ -123,6 +123,8 @@ mod tests {
             residual_ug: 20.0,
             residual_after_ug: 5.0,
             noise_floor_ug: 5.0,
+            foreseeable_ug: 10.0,
+            foreseeable_after_ug: 5.0,
             explainable: 1.0,
             findings: findings.iter().map(finding).collect(),
             unobservable: Vec::new(),

@@ -12,10 +12,14 @@ pub struct Diagnosis {
     pub residual_ug: f64,
     /// Held-out residual with all findings added, µg.
     pub residual_after_ug: f64,
+    /// The same two without what is each run's own, µg: its offset, its mounting, and what effects with a memory brought
+    /// along from before. Nobody can foresee that. Of fewer than three runs nothing is left out.
+    pub foreseeable_ug: f64,
+    /// With all findings added.
+    pub foreseeable_after_ug: f64,
     /// Noise from sample to sample that no model could remove, µg.
     pub noise_floor_ug: f64,
-    /// Share of the residual's square above the noise that the findings remove, 0 to 1. What is new at
-    /// every start of the sensor counts as noise here.
+    /// Share of the foreseeable residual's square above the noise that the findings remove, 0 to 1.
     pub explainable: f64,
     /// What is missing, in the order in which it should be added.
     pub findings: Vec<Finding>,

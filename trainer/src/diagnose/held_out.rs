@@ -9,16 +9,16 @@ use super::evidence::{product, stacked};
 use super::instrument::Known;
 use super::layout::Cell;
 use super::whitening::Columns;
-use nalgebra::{Cholesky, DMatrix, Matrix2, Vector2};
+use nalgebra::{Cholesky, DMatrix, DVector};
 use std::ops::Range;
 
 /// What is read wrong when each run is predicted from the others.
 pub(super) struct HeldOut {
     /// RMS over all samples, µg.
     pub residual_ug: f64,
-    /// The same without the offset, and what follows the acceleration across the input axis, of each part that was left
-    /// out, µg: without what is new at every start and in every mounting.
-    pub about_rig_ug: f64,
+    /// The same without what is each part's own, µg: its offset, what follows the acceleration across the input axis, and
+    /// what effects brought along, as they are new at every start and in every mounting.
+    pub foreseeable_ug: f64,
     /// Sum of squares of the whitened residuals: −2 log likelihood but for a constant.
     pub deviance: f64,
     /// How many parts were left out, one after the other.
@@ -28,9 +28,9 @@ pub(super) struct HeldOut {
 }
 
 impl HeldOut {
-    /// The residual without what no model can foretell, µg: a run's own offset and mounting.
+    /// The residual without what no model can foretell, µg: a run's own offset, mounting and beginning.
     pub fn structure_ug(&self) -> f64 {
-        if self.whole_runs { self.about_rig_ug } else { self.residual_ug }
+        if self.whole_runs { self.foreseeable_ug } else { self.residual_ug }
     }
 }
 
@@ -43,14 +43,14 @@ impl Case<'_> {
         let mut normal = product(&white_freedom, &white_freedom);
         (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1.0);
         let right = product(&white_freedom, &white_left);
-        let (mut squares, mut of_rig, mut samples, mut deviance) = (0.0, 0.0, 0.0, 0.0);
+        let (mut squares, mut own, mut samples, mut deviance) = (0.0, 0.0, 0.0, 0.0);
         let folds = self.folds();
         let (parts, whole_runs) = (folds.len(), self.layout.stretches.len() >= FEW_RUNS);
         for (run, rows) in folds {
             let part = |matrix: &Columns| matrix[run].rows(rows.start, rows.len()).into_owned();
-            let own = vec![part(&white_freedom)];
-            let others = &normal - product(&own, &own);
-            let rest = &right - product(&own, &vec![part(&white_left)]);
+            let here = vec![part(&white_freedom)];
+            let others = &normal - product(&here, &here);
+            let rest = &right - product(&here, &vec![part(&white_left)]);
             let Some(factor) = Cholesky::new(others) else { continue };
             let learnt = factor.solve(&rest);
             let predicted: DMatrix<f64> = part(&left) - part(&freedom) * &learnt;
@@ -59,11 +59,11 @@ impl Case<'_> {
                 squares += cell.samples * residual.powi(2) + (cell.samples - 1.0) * self.sample_ug.powi(2);
                 samples += cell.samples;
             }
-            of_rig += squares_of_rig(cells, &predicted);
-            deviance += (part(&white_left) - &own[0] * &learnt).norm_squared();
+            own += squares_of_its_own(cells, &predicted, &self.layout.remembered);
+            deviance += (part(&white_left) - &here[0] * &learnt).norm_squared();
         }
         let rms = |squares: f64| if samples > 0.0 { (squares.max(0.0) / samples).sqrt() } else { 0.0 };
-        HeldOut { residual_ug: rms(squares), about_rig_ug: rms(squares - of_rig), deviance, parts, whole_runs }
+        HeldOut { residual_ug: rms(squares), foreseeable_ug: rms(squares - own), deviance, parts, whole_runs }
     }
 
     /// What may adapt where something is left out: the instrument, and the effects' parameters about as far as they
@@ -94,23 +94,28 @@ impl Case<'_> {
     }
 }
 
-/// How much of the sum of squares an offset and a slope over the acceleration across the input axis take up.
-fn squares_of_rig(cells: &[Cell], residual: &DMatrix<f64>) -> f64 {
-    let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
-    for (cell, residual) in cells.iter().zip(residual.iter()) {
-        let columns = Vector2::new(1.0, cell.cross_g);
-        normal += cell.samples * columns * columns.transpose();
-        right += cell.samples * residual * columns;
+/// How much of the sum of squares an offset takes up, a slope over the acceleration across the input axis, and what is
+/// left of these beginnings.
+fn squares_of_its_own(cells: &[Cell], residual: &DMatrix<f64>, remembered: &[(usize, usize)]) -> f64 {
+    let weighted = |value: &dyn Fn(usize) -> f64| {
+        DVector::from_fn(cells.len(), |index, _| cells[index].samples.sqrt() * value(index))
+    };
+    let rig = [weighted(&|_| 1.0), weighted(&|index| cells[index].cross_g)];
+    let begun = remembered.iter().map(|&(place, end)| weighted(&|index| cells[index].beginnings[place][end]));
+    let residual = weighted(&|index| residual[index]);
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    for column in rig.into_iter().chain(begun) {
+        let beyond = basis.iter().fold(column.clone(), |left, direction| &left - direction * direction.dot(&left));
+        // Where the sensor was never turned, the mounting is part of the offset.
+        if beyond.norm_squared() > LEAST_OF_ITS_OWN * column.norm_squared() {
+            basis.push(beyond.normalize());
+        }
     }
-    // Where the sensor was never turned, the mounting is part of the offset.
-    let [offset, mounting] = [normal[(0, 0)], normal[(1, 1)]];
-    let turned = normal.determinant() > LEAST_TURNED * offset * mounting;
-    let solved = turned.then(|| normal.try_inverse()).flatten().map(|inverse| right.dot(&(inverse * right)));
-    solved.unwrap_or_else(|| right[0] * right[0] / offset.max(1.0))
+    basis.iter().map(|direction| direction.dot(&residual).powi(2)).sum()
 }
 
-/// A mounting shows if the acceleration across varies by so much of its square.
-const LEAST_TURNED: f64 = 1e-4;
+/// What varies by less than this share of its square is part of what came before.
+const LEAST_OF_ITS_OWN: f64 = 1e-4;
 
 /// With fewer runs, parts of them are left out; so many parts in all.
 const FEW_RUNS: usize = 3;
@@ -127,17 +132,27 @@ mod tests {
     }
 
     #[test]
-    fn an_offset_and_a_tilt_are_the_rigs_and_a_tilt_of_what_was_never_turned_is_an_offset() {
+    fn an_offset_a_tilt_and_a_beginning_are_a_runs_own_and_a_tilt_of_what_was_never_turned_is_an_offset() {
         let course = |cells: &[Cell]| DMatrix::from_fn(CELLS, 1, |row, _| 150.0 - 90.0 * cells[row].cross_g);
         let squares = |cells: &[Cell]| -> f64 {
             cells.iter().zip(course(cells).iter()).map(|(cell, value)| cell.samples * value * value).sum()
         };
         let turned: Vec<Cell> = (0..CELLS).map(|index| cell(index, index as f64 / 20.0)).collect();
-        assert!((squares_of_rig(&turned, &course(&turned)) / squares(&turned) - 1.0).abs() < 1e-9);
+        assert!((squares_of_its_own(&turned, &course(&turned), &[]) / squares(&turned) - 1.0).abs() < 1e-9);
         let still: Vec<Cell> = (0..CELLS).map(|index| cell(index, 1.0)).collect();
-        assert!((squares_of_rig(&still, &course(&still)) / squares(&still) - 1.0).abs() < 1e-9);
+        assert!((squares_of_its_own(&still, &course(&still), &[]) / squares(&still) - 1.0).abs() < 1e-9);
         // What swings within the run is neither.
         let swing = DMatrix::from_fn(CELLS, 1, |row, _| if row % 2 == 0 { 10.0 } else { -10.0 });
-        assert!(squares_of_rig(&turned, &swing) < 0.1 * 100.0 * turned.iter().map(|cell| cell.samples).sum::<f64>());
+        let all = 100.0 * turned.iter().map(|cell| cell.samples).sum::<f64>();
+        assert!(squares_of_its_own(&turned, &swing, &[]) < 0.1 * all);
+        // Nor is what fades, unless an effect is known that brought it along.
+        let begun = |index: usize| Cell { beginnings: [[(-(index as f64) / 3.0).exp(), 0.0]; 4], ..cell(index, 1.0) };
+        let begun: Vec<Cell> = (0..CELLS).map(begun).collect();
+        let fading = DMatrix::from_fn(CELLS, 1, |row, _| 80.0 * begun[row].beginnings[1][0] + 7.0);
+        let share = |remembered: &[(usize, usize)]| {
+            let all: f64 = begun.iter().zip(fading.iter()).map(|(cell, value)| cell.samples * value * value).sum();
+            squares_of_its_own(&begun, &fading, remembered) / all
+        };
+        assert!((share(&[(1, 0)]) - 1.0).abs() < 1e-9 && share(&[]) < 0.7, "{} {}", share(&[(1, 0)]), share(&[]));
     }
 }

@@ -6,7 +6,7 @@ use super::candidate::{Candidate, name_of, with_channels};
 use super::case::{Case, Noises};
 use super::evidence::{Score, compressed};
 use super::instrument::{Instrument, Known};
-use super::layout::{Cell, Layout};
+use super::layout::Layout;
 use super::left::Held;
 use super::noise_search::first_guess;
 use super::observable::{Screening, unobservable};
@@ -14,7 +14,7 @@ use super::search::{Contender, Found, LOWERED};
 use super::separation::separate;
 use super::sum_channel::SumChannel;
 use super::telltale::Telltale;
-use super::whitening::{BEGINNING, FLICKER, MOUNTING, NODE, NoiseModel, POSE, POSITION, RUN, TURN, WALK, WANDER};
+use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, POSE, POSITION, RUN, TURN, WALK, WANDER};
 use crate::campaign::Campaign;
 use crate::fit::dataset::InputScale;
 use crate::model::Model;
@@ -231,12 +231,13 @@ fn foreseen(case: &mut Case, start: &Known, found: &Findings, candidates: &[Cand
 
 fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) -> Diagnosis {
     let structured = is_structured(case, &found.noises.delta);
-    let about_rig_ug = |known: &Known| case.held_out(known, &found.noises).structure_ug();
+    let foreseeable_ug = |known: &Known| case.held_out(known, &found.noises).structure_ug();
+    let [before_ug, mut after_ug] = [start, &found.known].map(foreseeable_ug);
     // Where structure remains, what merely resembles its cause does not foretell other runs.
-    let futile = structured && about_rig_ug(&found.known) > LOWERED * about_rig_ug(start);
-    if futile {
+    if structured && after_ug > LOWERED * before_ug {
         found.known = start.clone();
         found.steps.clear();
+        after_ug = before_ug;
     }
     let telltales = case.telltales(&found.known, &found.noises, &campaign.channels);
     let unexplained =
@@ -257,7 +258,9 @@ fn answer(case: &Case, campaign: &Campaign, start: &Known, mut found: Findings) 
         residual_ug,
         residual_after_ug,
         noise_floor_ug: case.sample_ug,
-        explainable: explainable(case, residual_ug, residual_after_ug, &found.noises.delta),
+        foreseeable_ug: before_ug,
+        foreseeable_after_ug: after_ug,
+        explainable: explainable(before_ug, after_ug, &found.noises.delta),
         findings,
         unobservable: Vec::new(),
         unexplained: unexplained
@@ -318,15 +321,11 @@ fn parameters(known: &Known, sigmas: &[Vec<f64>], at: usize) -> BTreeMap<String,
         .collect()
 }
 
-/// Share of the square above what no model can remove.
-fn explainable(case: &Case, before_ug: f64, after_ug: f64, noise: &NoiseModel) -> f64 {
-    let brought_along = |cell: &Cell| {
-        let each = cell.beginnings.iter().zip(&noise.parts[BEGINNING..]);
-        each.map(|(left, sigma)| left.iter().sum::<f64>() * sigma).fold(0.0, f64::hypot)
-    };
-    let brought_along_ug = case.rms_ug(&case.columns(|_, _, cell| [brought_along(cell)]));
-    let parts = noise.parts.iter().take(WALK).map(|sigma| sigma * sigma).sum::<f64>() + brought_along_ug.powi(2);
-    let excess = before_ug.powi(2) - (noise.sample.powi(2) + parts).min(after_ug.powi(2));
+/// Share of the square above what no model can remove; what is new in every run is not in it.
+fn explainable(before_ug: f64, after_ug: f64, noise: &NoiseModel) -> f64 {
+    let parts = [POSITION, NODE, FLICKER, WANDER, POSE, TURN].map(|part| noise.parts[part].powi(2));
+    let floor = (noise.sample.powi(2) + parts.iter().sum::<f64>()).min(after_ug.powi(2));
+    let excess = before_ug.powi(2) - floor;
     if excess > 0.0 { ((before_ug.powi(2) - after_ug.powi(2)) / excess).clamp(0.0, 1.0) } else { 0.0 }
 }
 

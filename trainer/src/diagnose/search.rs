@@ -177,10 +177,9 @@ impl Case<'_> {
             |known: &Known| Some(Bench::new(&case.layout, noises.delta, &case.left(known).delta, &freedom)?.deviance);
         let gain = fitted(known)? - fitted(&with)?;
         let (before, after) = (case.held_out(known, noises), case.held_out(&with, noises));
-        let worse = after.residual_ug > WORSE * before.residual_ug;
+        let ratio = after.structure_ug() / before.structure_ug();
         let halved = after.residual_ug < HALVED * before.residual_ug;
-        let lowered = !worse && after.structure_ug() < LOWERED * before.structure_ug();
-        Some(halved || lowered || !worse && before.deviance - after.deviance > FORETOLD * gain.max(0.0))
+        Some(halved || ratio < LOWERED || ratio < WORSE && before.deviance - after.deviance > FORETOLD * gain.max(0.0))
     }
 
     /// The effect with which what was left out is foretold far better than without, wherever a wander that large hides
