@@ -130,16 +130,28 @@ pub(super) trait Pass: Send + Sync {
     fn log_det(&self) -> f64;
 }
 
+/// Calls a function of the smallest size of filter that has room for so many states: its work goes with their square.
+macro_rules! of_size {
+    ($states:expr, $make:ident($($argument:expr),*)) => {
+        match $states.len() {
+            0..=4 => $make::<4>($($argument),*),
+            5..=6 => $make::<6>($($argument),*),
+            7..=8 => $make::<8>($($argument),*),
+            9..=10 => $make::<10>($($argument),*),
+            11..=12 => $make::<12>($($argument),*),
+            13..=14 => $make::<14>($($argument),*),
+            _ => $make::<MOST_STATES>($($argument),*),
+        }
+    };
+}
+
 /// The filter's pass over a run.
 pub(super) fn pass(noise: &NoiseModel, states: &[State], run: &Stretch) -> Box<dyn Pass> {
-    match states.len() {
-        0..=4 => Box::new(Steps::of(Filter::<4, 1>::new(noise, states), run)),
-        5..=6 => Box::new(Steps::of(Filter::<6, 1>::new(noise, states), run)),
-        7..=8 => Box::new(Steps::of(Filter::<8, 1>::new(noise, states), run)),
-        9..=11 => Box::new(Steps::of(Filter::<11, 1>::new(noise, states), run)),
-        12..=15 => Box::new(Steps::of(Filter::<15, 1>::new(noise, states), run)),
-        _ => Box::new(Steps::of(Filter::<MOST_STATES, 1>::new(noise, states), run)),
-    }
+    of_size!(states, pass_of(noise, states, run))
+}
+
+fn pass_of<const N: usize>(noise: &NoiseModel, states: &[State], run: &Stretch) -> Box<dyn Pass> {
+    Box::new(Steps::of(Filter::<N, 1>::new(noise, states), run))
 }
 
 /// So many runs are filtered at once.
@@ -147,14 +159,7 @@ pub(super) const RUNS: usize = 4;
 
 /// Minus twice the logarithm of the likelihood of one column of each of at most [`RUNS`] runs, but for a constant.
 pub(super) fn deviance(noise: &NoiseModel, states: &[State], runs: &[(&Stretch, &[f64])]) -> f64 {
-    match states.len() {
-        0..=4 => deviance_by(Filter::<4, RUNS>::new(noise, states), runs),
-        5..=6 => deviance_by(Filter::<6, RUNS>::new(noise, states), runs),
-        7..=8 => deviance_by(Filter::<8, RUNS>::new(noise, states), runs),
-        9..=11 => deviance_by(Filter::<11, RUNS>::new(noise, states), runs),
-        12..=15 => deviance_by(Filter::<15, RUNS>::new(noise, states), runs),
-        _ => deviance_by(Filter::<MOST_STATES, RUNS>::new(noise, states), runs),
-    }
+    of_size!(states, deviance_of(noise, states, runs))
 }
 
 /// Most states: ten whatever is known, and the beginnings of what is.
@@ -163,7 +168,8 @@ const MOST_STATES: usize = 10 + BEGINNINGS * FORGOTTEN.len();
 /// So many variances are multiplied before their logarithm is taken.
 const FACTORS: usize = 8;
 
-fn deviance_by<const N: usize>(mut filter: Filter<N, RUNS>, runs: &[(&Stretch, &[f64])]) -> f64 {
+fn deviance_of<const N: usize>(noise: &NoiseModel, states: &[State], runs: &[(&Stretch, &[f64])]) -> f64 {
+    let mut filter = Filter::<N, RUNS>::new(noise, states);
     let longest = runs.iter().map(|(run, _)| run.cells.len()).max().unwrap_or_default();
     let (mut states, mut squares, mut logarithms, mut product) = ([[0.0; RUNS]; N], 0.0, 0.0, 1.0);
     for index in 0..longest {
