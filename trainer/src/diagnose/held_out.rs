@@ -68,7 +68,7 @@ impl Case<'_> {
 
     /// What may adapt where something is left out: the instrument, and the effects' parameters about as far as they
     /// could be known beforehand. What alone determines a parameter must not leave it at the mercy of noise.
-    fn recalling(&self, known: &Known) -> Columns {
+    pub fn recalling(&self, known: &Known) -> Columns {
         let stiff = self.stiff(known).delta;
         if known.effects.is_empty() {
             return stiff;

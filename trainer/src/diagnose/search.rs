@@ -91,9 +91,9 @@ const REFINEMENTS: usize = 4;
 const FORESEEN: usize = 8;
 /// What was left out must be read with half the error, or no more than a resemblance was found.
 const HALVED: f64 = 0.5;
-/// Or what neither start nor mounting explains must be lowered to this share.
+/// Or what is foreseeable of it must be lowered to this share.
 pub(super) const LOWERED: f64 = 0.9;
-/// And what was left out must not be read with so much more of it.
+/// Nor must all of it and what is foreseeable both grow to this.
 const WORSE: f64 = 1.1;
 /// Share of the evidence that must hold for runs that were left out.
 const FORETOLD: f64 = 0.25;
@@ -165,21 +165,22 @@ impl Case<'_> {
     }
 
     /// Whether runs that were left out are explained better with the effect than without, or are at least read with half
-    /// the error, or with clearly less of what the rig doesn't explain: the residual alone, as the sum of the frequencies
+    /// the error, or with clearly less of what is foreseeable: the residual alone, as the sum of the frequencies
     /// has no held-out part of its own. Likelihood alone would not do: it weighs most where the noise is least, and there
     /// no formula is exact.
     fn foretells(&self, known: &Known, contender: &Contender) -> Option<bool> {
         let noises = contender.noises.as_ref()?;
         let with = known.with(&contender.effect, &contender.values);
         let case = self.remembering(&with);
-        let freedom = case.adapting(known, noises).delta;
-        let fitted =
-            |known: &Known| Some(Bench::new(&case.layout, noises.delta, &case.left(known).delta, &freedom)?.deviance);
+        let fitted = |known: &Known| {
+            Some(Bench::new(&case.layout, noises.delta, &case.left(known).delta, &case.recalling(known))?.deviance)
+        };
         let gain = fitted(known)? - fitted(&with)?;
         let (before, after) = (case.held_out(known, noises), case.held_out(&with, noises));
-        let ratio = after.structure_ug() / before.structure_ug();
-        let halved = after.residual_ug < HALVED * before.residual_ug;
-        Some(halved || ratio < LOWERED || ratio < WORSE && before.deviance - after.deviance > FORETOLD * gain.max(0.0))
+        let all = after.residual_ug / before.residual_ug;
+        let foreseeable = after.structure_ug() / before.structure_ug();
+        let foretold = before.deviance - after.deviance > FORETOLD * gain.max(0.0);
+        Some(all < HALVED || foreseeable < LOWERED || foretold && (all < WORSE || foreseeable < WORSE))
     }
 
     /// The effect with which what was left out is foretold far better than without, wherever a wander that large hides
