@@ -63,7 +63,7 @@ impl Candidate {
         let most_g = case.layout.cells().map(|cell| cell.level_g.abs()).fold(LEAST_G, f64::max);
         let most_c_per_g = SHIFTS.into_iter().fold(0.0, f64::max) * case.shift_c_per_g();
         let step_c_per_g = width_c(effect.about, values) * PLACE_STEP / most_g;
-        let count = (most_c_per_g / step_c_per_g).ceil().min(MOST_SHIFTS);
+        let count = (most_c_per_g / step_c_per_g).ceil().clamp(1.0, MOST_SHIFTS);
         let still = case.left(&Known::NONE);
         let at = |k: i32| {
             let mut values = values.to_vec();
