@@ -181,7 +181,8 @@ fn choose_expression(
     let text = choice.expression.as_deref().ok_or(TrainError::NoExpression)?;
     let expression = Some(Expression::parse(text, &campaign.channels)?);
     let chosen = Chosen { expression, ..Chosen::of(about) };
-    let course_g: Vec<f64> = runs.iter().flat_map(|run| chosen.course_g(run, campaign.max_gap_us())).collect();
+    let max_gap_us = campaign.max_gap_us();
+    let course_g: Vec<f64> = runs.iter().flat_map(|run| chosen.course_g(run, max_gap_us)).collect();
     let mean_g = crate::metrics::mean(&course_g);
     let size = rms(&course_g);
     let scatter = rms(course_g.iter().map(|value_g| value_g - mean_g).collect::<Vec<_>>().iter());
