@@ -8,6 +8,7 @@ mod failure;
 mod hex;
 mod key;
 mod link;
+mod output;
 mod page;
 mod plot;
 mod progress;

@@ -2,6 +2,7 @@
 
 use crate::failure::{Answer, Failure};
 use crate::key::SecretKey;
+use crate::output::write_whole;
 use crate::{hex, region};
 use clap::Args;
 use firmware_core::storage::empty_slot;
@@ -45,10 +46,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<String, Failure> {
         // The programmer erases what it writes to: a mark in the second slot takes away what was committed there.
         let (at, mark) = empty_slot();
         let text = hex::text(&[(origin, bytes), (origin + length / 2 + at, &mark)])?;
-        std::fs::write(path, text).map_err(|error| Failure::io(path, &error))?;
+        write_whole(path, text.as_bytes())?;
         Ok(format!(", for address {origin:#010x}"))
     } else {
-        std::fs::write(path, bytes).map_err(|error| Failure::io(path, &error))?;
+        write_whole(path, bytes)?;
         Ok(String::new())
     }
 }
