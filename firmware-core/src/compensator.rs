@@ -6,6 +6,7 @@ use crate::network::Network;
 use crate::observe::{Observation, Scale};
 use crate::program::ProgramError;
 use crate::real::Real;
+use crate::slope;
 use crate::terms::Terms;
 use core::fmt;
 use protocol::{Blob, Domain, Reading, Sample, Scaling, Status, Term};
@@ -44,6 +45,13 @@ pub enum LoadError {
     Number,
     /// The calibrated domain is empty.
     Domain,
+    /// The slope of the static model vanishes or turns its sign within the calibrated domain.
+    Slope {
+        /// Frequency difference where it was found, µHz.
+        delta_f_uhz: i64,
+        /// Temperature where it was found, µ°C.
+        temperature_uc: i32,
+    },
     /// This processor computes other bits than the one that made the calibration.
     Proof {
         /// The checksum of the bits computed here.
@@ -65,6 +73,13 @@ impl fmt::Display for LoadError {
             Self::TooManyEffects => write!(f, "more effects than the instrument has room for"),
             Self::Number => write!(f, "a weight, coefficient or scale is not a usable number"),
             Self::Domain => write!(f, "the calibrated domain is empty"),
+            // Integers only: printing a float costs a device kilobytes.
+            Self::Slope { delta_f_uhz, temperature_uc } => write!(
+                f,
+                "the slope of the static model vanishes or turns its sign within the calibrated domain, near a signal of {} and {} °C: it can't measure there",
+                delta_f_uhz / 1_000_000,
+                temperature_uc / 1_000_000
+            ),
             Self::Proof { computed, stored } => write!(
                 f,
                 "this processor computes other bits ({computed:#010x}) than the one that made the calibration ({stored:#010x})"
@@ -112,6 +127,7 @@ impl Compensator<f32> {
 
     fn proven(blob: &Blob) -> Result<Self, LoadError> {
         let compensator = Self::assemble(blob)?;
+        compensator.check_slope()?;
         let computed = compensator.network.proof().ok_or(LoadError::Number)?;
         if computed != blob.proof {
             return Err(LoadError::Proof { computed, stored: blob.proof });
@@ -199,6 +215,27 @@ impl<R: Real> Compensator<R> {
         );
         status.set(Status::FREQUENCY_OUTSIDE, !within(sample.delta_f_uhz, self.domain.delta_f_uhz));
         status
+    }
+}
+
+impl Compensator<f32> {
+    fn check_slope(&self) -> Result<(), LoadError> {
+        let Domain { delta_f_uhz: (f_low, f_high), temperature_uc: (t_low, t_high) } = self.domain;
+        let corner = |delta_f_uhz, temperature_uc| {
+            let now = Observation::<f32>::new(&Sample::from_difference(0, delta_f_uhz, temperature_uc), &self.scaling);
+            self.scale.inputs(now.delta_f_offset_hz, now.temperature_offset_c)
+        };
+        let ([x_low, t_low_in], [x_high, t_high_in]) = (corner(f_low, t_low), corner(f_high, t_high));
+        let Some([i, j]) = slope::fault(&self.network, &self.scale, [x_low, x_high], [t_low_in, t_high_in]) else {
+            return Ok(());
+        };
+        let between =
+            |low: i64, high: i64, part: f32| low.saturating_add((high.saturating_sub(low) as f32 * part) as i64);
+        let temperature_uc = between(i64::from(t_low), i64::from(t_high), j);
+        Err(LoadError::Slope {
+            delta_f_uhz: between(f_low, f_high, i),
+            temperature_uc: i32::try_from(temperature_uc).unwrap_or(t_high),
+        })
     }
 }
 

@@ -10,7 +10,7 @@
 //!          memory.rs ─┐   │
 //!   effect/*.rs ─────→ terms.rs                what disturbs the resonators, what disturbs the output
 //!   program.rs ────────┤                       a user's own formula
-//!   network.rs ───────┴───┤ compensator.rs
+//!   network.rs ───────┴───┤ compensator.rs        slope.rs: only a calibration that can measure is loaded
 //!                      Reading                 acceleration and its status
 //!                         │ instrument.rs      the conversation: requests in, responses out
 //!   stream.rs ────────────┤                    measuring at a period, unasked
@@ -43,6 +43,7 @@ pub mod program;
 mod real;
 mod sensors;
 mod signature;
+mod slope;
 pub mod storage;
 mod stream;
 mod terms;

@@ -56,6 +56,31 @@ impl<R: Real> Network<R> {
         }
         sum
     }
+
+    /// Bounds of the output's derivative by `x` while the inputs stay within `x` and `t` (each lowest, highest).
+    ///
+    /// Interval arithmetic, unit by unit: the derivative is never outside, and the closer the ends, the tighter it is.
+    #[must_use]
+    pub fn slope_within(&self, x: [R; 2], t: [R; 2]) -> [R; 2] {
+        let mut sum = [R::ZERO; 2];
+        for unit in &self.units {
+            let (by_x, by_t) = (ordered(x.map(|x| unit.x * x)), ordered(t.map(|t| unit.t * t)));
+            let [low, high] = [unit.bias + by_x[0] + by_t[0], unit.bias + by_x[1] + by_t[1]];
+            // The sigmoid is the steeper, the nearer its argument is to zero.
+            let nearest = R::ZERO.between(low, high);
+            let farthest = if -low > high { low } else { high };
+            let rise = unit.output * unit.x;
+            let [least, most] = ordered([rise * slope(nearest), rise * slope(farthest)]);
+            sum[0] += least;
+            sum[1] += most;
+        }
+        sum
+    }
+}
+
+/// The smaller one first.
+pub(crate) fn ordered<R: Real>([a, b]: [R; 2]) -> [R; 2] {
+    if b < a { [b, a] } else { [a, b] }
 }
 
 impl Network<f32> {
@@ -114,6 +139,21 @@ mod tests {
         let [gx, gt] = network.gradient(x, t);
         assert!(((network.evaluate(x + h, t) - network.evaluate(x - h, t)) / (2.0 * h) - gx).abs() < 1e-9);
         assert!(((network.evaluate(x, t + h) - network.evaluate(x, t - h)) / (2.0 * h) - gt).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_slope_is_never_outside_its_bounds_and_they_close_in_on_it() {
+        let network = Network::<f64>::new(&example());
+        let corners = |k: i32| (f64::from(k % 7) * 0.3 - 1.0, f64::from(k / 7) * 0.25 - 0.9);
+        for (k, width) in (0..49).flat_map(|k| [1.0, 0.1, 1e-7].map(|width| (k, width))) {
+            let (x, t) = corners(k);
+            let [least, most] = network.slope_within([x, x + width], [t, t + width]);
+            for (i, j) in (0..=4).flat_map(|i| (0..=4).map(move |j| (i, j))) {
+                let [by_x, _] = network.gradient(x + width * f64::from(i) / 4.0, t + width * f64::from(j) / 4.0);
+                assert!((least - 1e-12..=most + 1e-12).contains(&by_x), "{by_x} is outside {least} to {most}");
+            }
+            assert!(most - least < 20.0 * width, "{least} to {most} within {width}");
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! From raw integers to the numbers that formulas use.
 
+use crate::network::{Network, ordered};
 use crate::real::Real;
 use protocol::limits::MAX_CHANNELS;
 use protocol::{Sample, Scaling, Status};
@@ -72,6 +73,14 @@ impl<R: Real> Scale<R> {
     pub fn reading_g(&self, x: R, t: R, network: R) -> R {
         let [constant, by_x, by_t, by_xt] = self.line_g;
         constant + by_x * x + by_t * t + by_xt * (x * t) + self.output_g * network
+    }
+
+    /// Bounds of the static reading's derivative by x, g, while the inputs stay within these (each lowest, highest).
+    pub fn slope_within(&self, network: &Network<R>, x: [R; 2], t: [R; 2]) -> [R; 2] {
+        let [_, by_x, _, by_xt] = self.line_g;
+        let [least, most] = ordered(t.map(|t| by_x + by_xt * t));
+        let [low, high] = ordered(network.slope_within(x, t).map(|slope| self.output_g * slope));
+        [least + low, most + high]
     }
 }
 
