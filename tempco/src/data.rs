@@ -3,7 +3,8 @@
 use crate::failure::Failure;
 use clap::Args;
 use std::path::PathBuf;
-use trainer::campaign::{Campaign, HoldOut, Measured, ReadOptions};
+use trainer::campaign::{Campaign, HoldOut, Measured, ReadAs, ReadOptions};
+use trainer::model::Model;
 
 /// Where the measurements are, and how to read them.
 #[derive(Args, Clone)]
@@ -54,7 +55,12 @@ pub struct Reading {
 
 impl Data {
     pub fn read(&self) -> Result<Campaign, Failure> {
-        self.reading.read(&self.files)
+        self.reading.read(&self.files, &ReadAs::default())
+    }
+
+    /// Reads as the model's campaign was read, unless the options say otherwise.
+    pub fn read_for(&self, model: &Model) -> Result<Campaign, Failure> {
+        self.reading.read_for(&self.files, model)
     }
 
     /// The same on a command line, to be typed again.
@@ -65,7 +71,22 @@ impl Data {
 }
 
 impl Reading {
-    pub fn read(&self, files: &[PathBuf]) -> Result<Campaign, Failure> {
+    pub fn read(&self, files: &[PathBuf], before: &ReadAs) -> Result<Campaign, Failure> {
+        Ok(Campaign::read_like(files, &self.options()?, before)?)
+    }
+
+    /// Reads as the model's campaign was read, and says so.
+    pub fn read_for(&self, files: &[PathBuf], model: &Model) -> Result<Campaign, Failure> {
+        let before = &model.provenance.read_as;
+        let campaign = self.read(files, before)?;
+        let words: Vec<String> = [&before.options, &before.manifest].into_iter().flat_map(words).collect();
+        if !words.is_empty() {
+            anstream::eprintln!("Read as the model's campaign was, where nothing else is said: {}", words.join(" "));
+        }
+        Ok(campaign)
+    }
+
+    fn options(&self) -> Result<ReadOptions, Failure> {
         let mut options = ReadOptions {
             signal: measured(self.signal.as_ref(), self.signal_unit.as_ref()),
             reference: measured(self.reference.as_ref(), self.reference_unit.as_ref()),
@@ -79,26 +100,32 @@ impl Reading {
                 Failure::new(format_args!("--map {pair}: expected NAME=COLUMN"))
                     .help("write the name that tempco uses first, as in --map delta_f_hz=FreqDiff")
             })?;
-            options.map.push((name.trim().to_owned(), column.trim().to_owned()));
+            options.map.insert(name.trim().to_owned(), column.trim().to_owned());
         }
-        Ok(Campaign::read(files, &options)?)
+        Ok(options)
     }
 
     /// The options that were given, as they are typed.
-    fn words(&self) -> impl Iterator<Item = String> {
-        let list = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
-        let one = [
-            ("--signal", self.signal.clone()),
-            ("--signal-unit", self.signal_unit.clone()),
-            ("--reference", self.reference.clone()),
-            ("--reference-unit", self.reference_unit.clone()),
-            ("--constant-reference", self.constant_reference.map(|g| g.to_string())),
-            ("--channels", self.channels.as_deref().and_then(list)),
-            ("--ignore", list(&self.ignore)),
-        ];
-        let maps = self.map.iter().map(|pair| ("--map", Some(pair.clone())));
-        maps.chain(one).filter_map(|(name, value)| Some(format!("{name} {}", quoted(&value?))))
+    fn words(&self) -> impl Iterator<Item = String> + use<> {
+        words(&self.options().unwrap_or_default())
     }
+}
+
+/// Options as they are typed.
+fn words(options: &ReadOptions) -> impl Iterator<Item = String> + use<> {
+    let list = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
+    let (signal, reference) = (options.signal.as_ref(), options.reference.as_ref());
+    let one = [
+        ("--signal", signal.map(|signal| signal.column.clone())),
+        ("--signal-unit", signal.map(|signal| signal.unit.clone())),
+        ("--reference", reference.map(|reference| reference.column.clone())),
+        ("--reference-unit", reference.map(|reference| reference.unit.clone())),
+        ("--constant-reference", options.constant_reference.map(|g| g.to_string())),
+        ("--channels", options.channels.as_deref().and_then(list)),
+        ("--ignore", list(&options.ignore)),
+    ];
+    let maps: Vec<_> = options.map.iter().map(|(name, text)| ("--map", Some(format!("{name}={text}")))).collect();
+    maps.into_iter().chain(one).filter_map(|(name, value)| Some(format!("{name} {}", quoted(&value?))))
 }
 
 /// As a shell takes it for one word.

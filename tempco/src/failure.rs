@@ -5,6 +5,8 @@ use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
 use trainer::campaign::CampaignError;
+use trainer::model::{DeviceLimit, ModelError};
+use trainer::train::TrainError;
 
 /// What a command answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +63,27 @@ impl From<CampaignError> for Failure {
     }
 }
 
+impl From<ModelError> for Failure {
+    fn from(error: ModelError) -> Self {
+        Self { help: error.help(), ..Self::new(error) }
+    }
+}
+
+impl From<TrainError> for Failure {
+    fn from(error: TrainError) -> Self {
+        match &error {
+            TrainError::Unusable(limit) => Self { help: limit.help().map(str::to_owned), ..Self::new(error) },
+            _ => Self::new(error),
+        }
+    }
+}
+
+impl From<DeviceLimit> for Failure {
+    fn from(error: DeviceLimit) -> Self {
+        Self { help: error.help().map(str::to_owned), ..Self::new(error) }
+    }
+}
+
 macro_rules! plain {
     ($($error:ty),* $(,)?) => {
         $(impl From<$error> for Failure {
@@ -75,10 +98,7 @@ plain!(
     trainer::cross_validation::CrossValidationError,
     trainer::diagnose::DiagnoseError,
     trainer::ladder::LadderError,
-    trainer::model::ModelError,
-    trainer::model::DeviceLimit,
     trainer::residuals::ResidualError,
-    trainer::train::TrainError,
     firmware_core::LoadError,
     protocol::BlobError,
     firmware_sim::link::LinkError,

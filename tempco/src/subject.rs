@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use clap::Args;
 use std::path::PathBuf;
 use trainer::campaign::Campaign;
+use trainer::model::Model;
 use trainer::train::EffectChoice;
 
 /// `EFFECT DATA…`, or `--expression TEXT DATA…`.
@@ -17,6 +18,10 @@ pub struct Subject {
     /// An effect of one's own: what the bias is proportional to (`tempco effects expression` lists what it may read)
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     expression: Option<String>,
+
+    /// Scale factor in signal units per reference unit, in place of the one that the model was trained with
+    #[arg(long, value_name = "HZ_PER_G", allow_negative_numbers = true)]
+    pub scale_factor: Option<f64>,
 
     #[command(flatten)]
     reading: Reading,
@@ -31,13 +36,13 @@ impl Subject {
         }
     }
 
-    /// The campaign.
-    pub fn read(&self) -> Result<Campaign, Failure> {
+    /// The campaign, read as the model's was, unless the options say otherwise.
+    pub fn read_for(&self, model: &Model) -> Result<Campaign, Failure> {
         let files = self.words.get(usize::from(self.expression.is_none())..).unwrap_or_default();
         if files.is_empty() {
             return Err(Failure::new("an effect and a campaign are needed, one of them is missing")
                 .help("write the effect first and the campaign after it, or --expression TEXT and the campaign"));
         }
-        self.reading.read(files)
+        self.reading.read_for(files, model)
     }
 }

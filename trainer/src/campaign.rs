@@ -31,7 +31,7 @@ mod tests;
 pub use check::Demand;
 pub use error::{CampaignError, Column, Facts, Missing, Place};
 pub(crate) use nearest::nearest;
-pub use options::{Measured, ReadOptions};
+pub use options::{Measured, ReadAs, ReadOptions};
 pub use split::{Basis, HoldOut, Split};
 
 use protocol::Sample;
@@ -52,6 +52,8 @@ pub struct Campaign {
     pub quantity: Quantity,
     /// Columns of the files that were left unread: text, not selected, or told to be ignored.
     pub ignored_columns: Vec<String>,
+    /// How its files were read.
+    pub read_as: ReadAs,
     /// Hash of the measured content. It knows nothing of folders, separators or the order of columns.
     pub sha256: [u8; 32],
 }
@@ -109,7 +111,7 @@ impl Campaign {
     #[must_use]
     pub fn new(runs: Vec<Run>, channels: Vec<String>, quantity: Quantity) -> Self {
         let sha256 = provenance::sha256(&runs, &channels, &quantity);
-        Self { runs, channels, quantity, ignored_columns: Vec::new(), sha256 }
+        Self { runs, channels, quantity, ignored_columns: Vec::new(), read_as: ReadAs::default(), sha256 }
     }
 
     /// [`Campaign::sha256`] as text.

@@ -5,10 +5,10 @@ use crate::metrics::allan::{AllanPoint, allan};
 use crate::metrics::full_temperature::{FullTemperature, full_temperature};
 use crate::metrics::stability::{Stability, stability};
 use crate::metrics::zero_bias::{ZeroBias, zero_bias};
-use crate::model::Model;
+use crate::model::{Model, SlopeOf};
 use crate::noise::{rms, sample_sigma_g};
 use crate::residuals::{ResidualError, Residuals, RunResiduals, arranged, residuals};
-use crate::sensitivity::{Sensitivity, SlopeOf, sensitivity};
+use crate::sensitivity::{Sensitivity, sensitivity};
 use crate::warnings::warnings;
 use serde::Serialize;
 
@@ -144,9 +144,7 @@ fn run_figures(model: &Model, run: &RunResiduals, held_out: bool) -> Option<RunF
 /// The slope of the model in the middle of its domain: what a raw figure in Hz is divided by.
 #[must_use]
 pub fn mean_slope_g_per_hz(model: &Model) -> f64 {
-    let middle = |[low, high]: [f64; 2]| f64::midpoint(low, high);
-    let delta_f_uhz = middle(model.domain.delta_f_uhz.map(|uhz| uhz as f64));
-    SlopeOf::new(model).at(delta_f_uhz, middle(model.domain.temperature_uc.map(f64::from)))
+    SlopeOf::new(model).in_the_middle()
 }
 
 fn figures(run: &Run, outputs_g: &[f64], residuals_g: &[f64], outputs: &[f64]) -> Figures {

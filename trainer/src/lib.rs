@@ -32,6 +32,7 @@ pub mod replay;
 pub mod report;
 pub mod reproduction;
 pub mod residuals;
+pub mod retrain;
 pub mod sensitivity;
 pub mod train;
 mod warnings;

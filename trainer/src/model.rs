@@ -1,9 +1,15 @@
 //! A compensation model: a text file that a person can diff.
 
+#[cfg(test)]
+mod example;
 mod fitted_effect;
+mod read;
+mod slope;
 
 pub use fitted_effect::ModelEffect;
+pub use slope::SlopeOf;
 
+use crate::campaign::ReadAs;
 use crate::expression::ExpressionError;
 use firmware_core::{Compensator, LoadError, Network};
 use protocol::limits::{HIDDEN, MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_TERMS};
@@ -60,6 +66,12 @@ pub struct Provenance {
     pub held_out_runs: Vec<String>,
     /// RMS residual on the training runs, reference unit.
     pub training_residual: f64,
+    /// Scale factor that was stated, signal unit per reference unit, for a campaign whose reference never varies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale_factor_hz_per_g: Option<f64>,
+    /// How the campaign's files were read; later commands read theirs in the same way.
+    #[serde(default, skip_serializing_if = "ReadAs::is_empty")]
+    pub read_as: ReadAs,
 }
 
 /// Units of the measured quantities.
@@ -85,6 +97,7 @@ pub struct ModelScaling {
     /// t per °C.
     pub temperature_gain_per_c: f32,
     /// Constant, x, t, x·t of the first-order instrument, g.
+    #[serde(deserialize_with = "read::exactly")]
     pub line_g: [f32; 4],
     /// g per unit of network output.
     pub output_g: f32,
@@ -95,8 +108,10 @@ pub struct ModelScaling {
 #[serde(deny_unknown_fields)]
 pub struct ModelDomain {
     /// Lowest and highest frequency difference, µHz.
+    #[serde(deserialize_with = "read::exactly")]
     pub delta_f_uhz: [i64; 2],
     /// Lowest and highest temperature, µ°C.
+    #[serde(deserialize_with = "read::exactly")]
     pub temperature_uc: [i32; 2],
     /// Longest gap between samples across which memories are carried, µs; [`u32::MAX`] means any.
     pub max_gap_us: u32,
@@ -107,10 +122,13 @@ pub struct ModelDomain {
 #[serde(deny_unknown_fields)]
 pub struct ModelNetwork {
     /// [x, t] weights of each hidden unit.
+    #[serde(deserialize_with = "read::rows_exactly")]
     pub input: [[f32; 2]; HIDDEN],
     /// Threshold of each hidden unit.
+    #[serde(deserialize_with = "read::exactly")]
     pub bias: [f32; HIDDEN],
     /// Output weight of each hidden unit.
+    #[serde(deserialize_with = "read::exactly")]
     pub output: [f32; HIDDEN],
     /// Threshold of the output.
     pub output_bias: f32,
@@ -136,14 +154,43 @@ pub enum ModelError {
         source: Box<toml::de::Error>,
     },
     /// Another version wrote it.
-    #[error("{path}: model format {found}, this version reads {supported}", path = path.display())]
+    #[error("{path}:{line}: model format {found}, this version reads {supported}", path = path.display())]
     Format {
         /// The file.
         path: PathBuf,
+        /// The line.
+        line: usize,
         /// Found.
-        found: u32,
+        found: i64,
         /// Understood.
         supported: u32,
+    },
+    /// A coefficient makes no physical sense.
+    #[error(
+        "{path}:{line}: effect `{effect}`: {parameter} = {value} is outside {low} to {high}",
+        path = path.display(), low = bounds.0, high = bounds.1
+    )]
+    Bound {
+        /// The file.
+        path: PathBuf,
+        /// The line.
+        line: usize,
+        /// The effect.
+        effect: String,
+        /// The coefficient.
+        parameter: &'static str,
+        /// Its value.
+        value: f64,
+        /// The least and the greatest value that it can have.
+        bounds: (f64, f64),
+    },
+    /// The text is a model that no device can run.
+    #[error("{path}: the model can't be used: {source}", path = path.display())]
+    Unusable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: DeviceLimit,
     },
     /// The model doesn't fit a device.
     #[error("the model can't be put on a device: {0}")]
@@ -191,6 +238,11 @@ pub enum DeviceLimit {
         /// The limit.
         most: usize,
     },
+    /// It was told a scale factor and reads with another one.
+    #[error(
+        "its slope is not the one of the scale factor that was stated when it was trained (`scale_factor_hz_per_g`)"
+    )]
+    ScaleFactor,
     /// The core refuses it.
     #[error("{0}")]
     Load(LoadError),
@@ -199,21 +251,6 @@ pub enum DeviceLimit {
 impl Model {
     /// The format that this version reads and writes.
     pub const FORMAT: u32 = 1;
-
-    /// Reads a model file.
-    ///
-    /// # Errors
-    /// With the file, and line and column where the text is wrong.
-    pub fn read(path: &Path) -> Result<Self, ModelError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| ModelError::Io { path: path.to_path_buf(), source })?;
-        let model: Self = toml::from_str(&text)
-            .map_err(|source| ModelError::Syntax { path: path.to_path_buf(), source: Box::new(source) })?;
-        if model.format != Self::FORMAT {
-            return Err(ModelError::Format { path: path.to_path_buf(), found: model.format, supported: Self::FORMAT });
-        }
-        Ok(model)
-    }
 
     /// Writes the model file.
     ///
@@ -266,7 +303,7 @@ impl Model {
             terms: self.wire_terms()?,
         };
         Compensator::load(&blob).map_err(DeviceLimit::Load)?;
-        Ok(blob)
+        if slope::agrees_with_what_was_stated(self) { Ok(blob) } else { Err(DeviceLimit::ScaleFactor) }
     }
 
     /// The bytes of [`Model::to_blob`].

@@ -7,8 +7,7 @@ use crate::campaign::Campaign;
 use crate::fit::dataset::InputScale;
 use crate::fit::neighbours::merged;
 use crate::fit::polynomial::Polynomial;
-use crate::model::Model;
-use firmware_core::Network;
+use crate::model::{Model, SlopeOf};
 use serde::Serialize;
 
 /// What the figures mean.
@@ -85,31 +84,4 @@ fn over_grid(model: &Model, ppm_at: impl Fn(f64, f64) -> f64) -> Sensitivity {
         worst = worst.max(ppm.abs());
     }
     Sensitivity { rms: (squares / f64::from(GRID * GRID)).sqrt(), worst }
-}
-
-/// The slope of a model's static part.
-pub struct SlopeOf<'a> {
-    model: &'a Model,
-    network: Network<f64>,
-}
-
-impl<'a> SlopeOf<'a> {
-    /// Of this model.
-    #[must_use]
-    pub fn new(model: &'a Model) -> Self {
-        Self { model, network: Network::new(&model.weights()) }
-    }
-
-    /// ∂a/∂Δf, g/Hz, at a frequency difference in µHz and a temperature in µ°C.
-    #[must_use]
-    pub fn at(&self, delta_f_uhz: f64, temperature_uc: f64) -> f64 {
-        let scaling = &self.model.scaling;
-        let x_per_hz = f64::from(scaling.delta_f_gain_per_hz);
-        let x = (delta_f_uhz - scaling.delta_f_zero_uhz as f64) * 1e-6 * x_per_hz;
-        let t = (temperature_uc - f64::from(scaling.temperature_zero_uc))
-            * 1e-6
-            * f64::from(scaling.temperature_gain_per_c);
-        let [_, by_x, _, by_xt] = scaling.line_g.map(f64::from);
-        (by_x + by_xt * t + f64::from(scaling.output_g) * self.network.gradient(x, t)[0]) * x_per_hz
-    }
 }

@@ -17,7 +17,7 @@ use crate::fit::effects::Coefficients;
 use crate::fit::firefly::FireflyError;
 use crate::fit::gradient_descent::DescentError;
 use crate::fit::polynomial::Polynomial;
-use crate::model::Model;
+use crate::model::{DeviceLimit, Model};
 use crate::progress::{Progress, Quiet};
 use crate::residuals::{Residuals, arranged, residuals};
 use protocol::Weights;
@@ -112,6 +112,14 @@ pub enum TrainError {
     /// A setting of the gradient descent makes no sense.
     #[error("gradient descent: {0}")]
     Descent(#[from] DescentError),
+    /// No slope can be learnt of one level.
+    #[error(
+        "the reference is the same in every row of the training runs, so they don't say what a change of it does: state the scale factor with --scale-factor"
+    )]
+    NoScaleFactor,
+    /// What was found can't measure.
+    #[error("what the training found is no instrument: {0}")]
+    Unusable(DeviceLimit),
     /// No restart gave finite weights.
     #[error("no restart converged to finite weights; look at the campaign with `tempco inspect`")]
     NoFiniteWeights,
@@ -183,6 +191,7 @@ fn fitted(campaign: &Campaign, split: &Split, task: Task) -> Result<Trained, Tra
     let none = if progress.cancelled() { TrainError::Cancelled } else { TrainError::NoFiniteWeights };
     let best = best.filter(|candidate| candidate.cost.is_finite()).ok_or(none)?;
     let mut model = task.model(campaign, split, &best);
+    model.to_blob().map_err(TrainError::Unusable)?;
     if let Some(residual) = training_residual(&model, campaign, split) {
         model.provenance.training_residual = residual;
     }

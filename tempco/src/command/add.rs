@@ -34,8 +34,9 @@ pub struct Add {
 
 impl Add {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let (model, campaign) = (Model::read(&self.model)?, self.subject.read()?);
-        let change = Change::of(&model, &campaign)?;
+        let model = Model::read(&self.model)?;
+        let campaign = self.subject.read_for(&model)?;
+        let change = Change::of(&model, &campaign)?.scaled(self.subject.scale_factor);
         let effects = change.with(EffectChoice { channel: self.channel.clone(), ..self.subject.effect() })?;
         ladder(&change, &effects, &self.output, self.json)
     }

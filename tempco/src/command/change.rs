@@ -5,10 +5,11 @@ use crate::failure::{Answer, Failure};
 use crate::render;
 use crate::table::Table;
 use std::path::Path;
-use trainer::campaign::{Campaign, HoldOut, Split};
+use trainer::campaign::{Campaign, Split};
 use trainer::compare::{Comparison, compare};
 use trainer::ladder::{BARE, Rung};
-use trainer::model::{Model, Provenance};
+use trainer::model::Model;
+use trainer::retrain;
 use trainer::train::{EffectChoice, TrainSettings, Trained, check};
 
 /// A model and the campaign to retrain it on.
@@ -16,6 +17,7 @@ pub struct Change<'a> {
     model: &'a Model,
     campaign: &'a Campaign,
     split: Split,
+    settings: TrainSettings,
 }
 
 /// What was trained from the bare network up.
@@ -28,15 +30,13 @@ pub struct Ladder {
 impl<'a> Change<'a> {
     /// Holds out the runs that the model holds out.
     pub fn of(model: &'a Model, campaign: &'a Campaign) -> Result<Self, Failure> {
-        let known = |name: &String| campaign.runs.iter().any(|run| run.name == *name);
-        let names: Vec<String> = model.provenance.held_out_runs.iter().filter(|name| known(name)).cloned().collect();
-        let choice = match names.as_slice() {
-            [] if model.provenance.held_out_runs.is_empty() => HoldOut::None,
-            [] => HoldOut::LastOfEachKind,
-            _ => HoldOut::Named(names),
-        };
-        let split = campaign.split(&choice)?;
-        Ok(Self { model, campaign, split })
+        Ok(Self { model, campaign, split: retrain::split(model, campaign)?, settings: retrain::settings(model) })
+    }
+
+    /// With this scale factor in place of the model's, if one is given.
+    pub fn scaled(mut self, scale_factor_hz_per_g: Option<f64>) -> Self {
+        self.settings.scale_factor_hz_per_g = scale_factor_hz_per_g.or(self.settings.scale_factor_hz_per_g);
+        self
     }
 
     /// The model's effects and one more.
@@ -88,8 +88,7 @@ impl<'a> Change<'a> {
     }
 
     fn settings(&self, effects: &[EffectChoice]) -> TrainSettings {
-        let (Provenance { seed, restarts, .. }, serial) = (&self.model.provenance, self.model.serial.clone());
-        TrainSettings { restarts: *restarts, serial, effects: effects.to_vec(), ..TrainSettings::new(*seed) }
+        TrainSettings { effects: effects.to_vec(), ..self.settings.clone() }
     }
 }
 

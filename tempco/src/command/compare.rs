@@ -8,13 +8,14 @@ use crate::render;
 use crate::report::html;
 use clap::Args;
 use std::path::PathBuf;
-use trainer::campaign::{Campaign, HoldOut};
+use trainer::campaign::Campaign;
 use trainer::compare::compare;
 use trainer::cross_validation::{CrossValidation, cross_validate};
 use trainer::ladder::{Rung, ladder};
-use trainer::model::{Model, Provenance};
+use trainer::model::Model;
 use trainer::report::{DataFile, Report, report};
-use trainer::train::{EffectChoice, TrainSettings};
+use trainer::retrain;
+use trainer::train::TrainSettings;
 
 /// Compares a model with measurements, run by run, in the device's own arithmetic.
 #[derive(Args)]
@@ -51,7 +52,7 @@ pub struct Compare {
 impl Compare {
     pub fn run(&self) -> Result<Answer, Failure> {
         let model = Model::read(&self.model)?;
-        let campaign = self.data.read()?;
+        let campaign = self.data.read_for(&model)?;
         let comparison = compare(&model, &campaign)?;
         let validation = if self.cross_validate { Some(validate(&model, &campaign)?) } else { None };
         if self.json {
@@ -78,9 +79,7 @@ impl Compare {
     fn report(&self, model: &Model, campaign: &Campaign) -> Result<Report, Failure> {
         let mut report = report(model, campaign)?;
         report.origin.files = DataFile::all_of(campaign).map_err(Failure::new)?;
-        // Without a level to train on, the lower rungs would need a scale factor that the model file doesn't state.
-        let trainable = report.comparison.sensitivity_ppm.is_some();
-        if report.origin.same_campaign && trainable && !model.effects.is_empty() {
+        if report.origin.same_campaign && !model.effects.is_empty() {
             report.ladder = rungs(model, campaign)?;
         }
         if self.diagnose {
@@ -92,21 +91,15 @@ impl Compare {
 
 /// What each effect of the model is worth. The lower rungs are trained again, as `add` did.
 fn rungs(model: &Model, campaign: &Campaign) -> Result<Vec<Rung>, Failure> {
-    let Provenance { seed, restarts, held_out_runs, .. } = &model.provenance;
-    let choice = if held_out_runs.is_empty() { HoldOut::None } else { HoldOut::Named(held_out_runs.clone()) };
-    let settings = TrainSettings { restarts: *restarts, ..TrainSettings::new(*seed) };
-    let progress = Restarts::new(restarts * model.effects.len(), "ladder");
-    Ok(ladder(model, campaign, &campaign.split(&choice)?, &settings, &progress)?)
+    let settings = retrain::settings(model);
+    let progress = Restarts::new(settings.restarts * model.effects.len(), "ladder");
+    Ok(ladder(model, campaign, &retrain::split(model, campaign)?, &settings, &progress)?)
 }
 
 /// Fewer restarts than a training: dozens of trainings are made, and the median restart is as good for this.
 const RESTARTS: usize = 4;
 
 fn validate(model: &Model, campaign: &Campaign) -> Result<CrossValidation, Failure> {
-    let settings = TrainSettings {
-        restarts: RESTARTS,
-        effects: EffectChoice::of(model),
-        ..TrainSettings::new(model.provenance.seed)
-    };
-    Ok(cross_validate(campaign, &campaign.split(&HoldOut::LastOfEachKind)?, &settings)?)
+    let settings = TrainSettings { restarts: RESTARTS, ..retrain::settings(model) };
+    Ok(cross_validate(campaign, &retrain::split(model, campaign)?, &settings)?)
 }

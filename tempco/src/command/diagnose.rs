@@ -32,7 +32,8 @@ pub struct Diagnose {
 
 impl Diagnose {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let diagnosis = diagnosed(&Model::read(&self.model)?, &self.data.read()?)?;
+        let model = Model::read(&self.model)?;
+        let diagnosis = diagnosed(&model, &self.data.read_for(&model)?)?;
         if self.json {
             anstream::println!("{:#}", serde_json::json!(diagnosis));
         } else {

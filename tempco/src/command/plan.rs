@@ -46,7 +46,8 @@ pub struct Plan {
 
 impl Plan {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let (model, campaign) = (Model::read(&self.model)?, self.data.read()?);
+        let model = Model::read(&self.model)?;
+        let campaign = self.data.read_for(&model)?;
         let diagnosis = diagnosed(&model, &campaign)?;
         let wish = Wish { effects: self.effects.clone(), hours: self.hours };
         let spinner = spinner("planning");

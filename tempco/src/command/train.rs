@@ -52,7 +52,7 @@ pub struct Training {
     seed: u64,
 
     /// Scale factor in signal units per reference unit, for a campaign whose reference never varies
-    #[arg(long, value_name = "HZ_PER_G")]
+    #[arg(long, value_name = "HZ_PER_G", allow_negative_numbers = true)]
     scale_factor: Option<f64>,
 
     /// Serial number of the sensor; the device then refuses the calibration of another one

@@ -46,7 +46,7 @@ impl Verify {
     #[expect(clippy::disallowed_methods, reason = "how fast a line is takes a clock")]
     pub fn run(&self) -> Result<Answer, Failure> {
         let model = Model::read(&self.model)?;
-        let campaign = arranged(&model, &self.data.read()?)?;
+        let campaign = arranged(&model, &self.data.read_for(&model)?)?;
         let blob = model.to_blob()?;
         let mut link = self.on.open(&blob.serial)?;
         if self.on.is_made_anew() {

@@ -222,7 +222,7 @@ fn parsed(option: &str) -> ReadOptions {
     match option.split_once(' ') {
         Some(("map", map)) => {
             let (name, text) = map.split_once('=').expect("a mapping");
-            options.map.push((name.to_owned(), text.to_owned()));
+            options.map.insert(name.to_owned(), text.to_owned());
         }
         Some(("channels", name)) => options.channels = Some(vec![name.to_owned()]),
         Some(("constant", number)) => options.constant_reference = number.parse().ok(),

@@ -201,6 +201,12 @@ fn check_header(table: &Table, options: &ReadOptions) -> Result<(), CampaignErro
     Ok(())
 }
 
+/// Whether a table has what a mapping of another table speaks of. What needs no column gives way to a column of our name.
+pub(super) fn is_there(table: &Table, name: &str, text: &str) -> bool {
+    let named = table.header.iter().any(|header| header == name);
+    map(table, name, text).is_ok_and(|input| matches!(input.source, Source::Cell(_)) || !named)
+}
+
 /// What a mapping's text stands for.
 fn map(table: &Table, name: &str, text: &str) -> Result<Input, CampaignError> {
     let text = text.trim();

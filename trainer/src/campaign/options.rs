@@ -1,13 +1,18 @@
 //! How a foreign table is to be understood: from the caller, and from the `campaign.toml` beside the data.
 
+use super::columns::is_there;
 use super::error::{CampaignError, Facts, Place, quoted};
+use super::table::Table;
 use super::{Quantity, table};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The file beside the data that says how to read it.
 const MANIFEST: &str = "campaign.toml";
+/// Our names for the reference and for what a signal can be written as.
+const REFERENCE: &str = "reference_g";
+const SIGNALS: [&str; 3] = ["delta_f_hz", "f1_hz", "f2_hz"];
 
 /// How the columns of a table are to be understood. The default understands the data contract's own names.
 ///
@@ -22,25 +27,67 @@ const MANIFEST: &str = "campaign.toml";
 /// | `row * 0.5` | the row's number in its file, from 0: a clock for tables without one |
 /// | `21.5` | the same number in every row |
 ///
-/// Of two mappings to one name the later one counts.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// `campaign.toml` holds the same as text, the mappings in a table `columns`; so does a model file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct ReadOptions {
     /// Our name and what stands for it, as in `--map delta_f_hz=FreqDiff`.
-    pub map: Vec<(String, String)>,
+    #[serde(rename = "columns", skip_serializing_if = "BTreeMap::is_empty")]
+    pub map: BTreeMap<String, String>,
     /// A signal other than a frequency difference in Hz. `f1_hz` and `f2_hz` lose their meaning then.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub signal: Option<Measured>,
     /// A reference other than an acceleration in g.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub reference: Option<Measured>,
     /// The auxiliary channels to keep, in this order; `None` keeps every numeric column.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub channels: Option<Vec<String>>,
     /// Columns to leave unread.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub ignore: Vec<String>,
     /// The reference of every row, g, where a still sensor has no column for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub constant_reference: Option<f64>,
 }
 
+/// How a campaign's files were read: what a model file keeps, so that later commands read others like them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ReadAs {
+    /// What the caller gave.
+    #[serde(skip_serializing_if = "ReadOptions::is_empty")]
+    pub options: ReadOptions,
+    /// What the `campaign.toml` beside the data said, if all files had the same.
+    #[serde(skip_serializing_if = "ReadOptions::is_empty")]
+    pub manifest: ReadOptions,
+}
+
+impl ReadAs {
+    /// Whether nothing but the data contract's own names was needed.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.options.is_empty() && self.manifest.is_empty()
+    }
+
+    /// How a table is read: by what the caller gives now, else as the files before were by the caller's wish, else by the
+    /// `campaign.toml` beside the table, else as by the one before. What the table has no column for is passed over, but
+    /// not what the caller gives now.
+    pub(super) fn for_table(&self, given: &ReadOptions, table: &Table) -> Result<Self, CampaignError> {
+        Ok(Self {
+            options: given.over(&self.options.fitting(table)),
+            manifest: ReadOptions::beside(&table.file)?.over(&self.manifest.fitting(table)),
+        })
+    }
+
+    /// Both as one.
+    pub(super) fn merged(&self) -> ReadOptions {
+        self.options.over(&self.manifest)
+    }
+}
+
 /// A measured quantity: its column, which may carry a conversion like any mapping, and the unit after it.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Measured {
     /// The column.
@@ -49,39 +96,74 @@ pub struct Measured {
     pub unit: String,
 }
 
-/// `campaign.toml`: the same options as text.
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct Manifest {
-    columns: BTreeMap<String, String>,
-    signal: Option<Measured>,
-    reference: Option<Measured>,
-    channels: Option<Vec<String>>,
-    ignore: Vec<String>,
-    constant_reference: Option<f64>,
-}
-
 impl ReadOptions {
-    /// These options over those of the `campaign.toml` beside `file`, if there is one.
-    pub(super) fn beside(&self, file: &Path) -> Result<Self, CampaignError> {
-        let path = file.with_file_name(MANIFEST);
-        if !path.is_file() {
-            return Ok(self.clone());
-        }
-        let text = table::read_text(&path)?;
-        let manifest = toml::from_str(&text).map_err(|error| not_understood(&path, &text, &error))?;
-        Ok(self.over(manifest))
+    /// Whether nothing is said.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
     }
 
-    fn over(&self, below: Manifest) -> Self {
+    /// What the `campaign.toml` beside `file` says, if there is one.
+    fn beside(file: &Path) -> Result<Self, CampaignError> {
+        let path = file.with_file_name(MANIFEST);
+        if !path.is_file() {
+            return Ok(Self::default());
+        }
+        let text = table::read_text(&path)?;
+        toml::from_str(&text).map_err(|error| not_understood(&path, &text, &error))
+    }
+
+    /// These options, and where they are silent those `below`.
+    fn over(&self, below: &Self) -> Self {
+        let mut below = below.clone();
+        // Signal and reference can each be said in several ways: one of them above silences all below.
+        if self.says_signal() {
+            below.forget_signal();
+        }
+        if self.says_reference() {
+            below.forget_reference();
+        }
+        let mut ignore = self.ignore.clone();
+        ignore.extend(below.ignore.into_iter().filter(|name| !self.ignore.contains(name)));
         Self {
-            map: below.columns.into_iter().chain(self.map.iter().cloned()).collect(),
+            map: below.map.into_iter().chain(self.map.clone()).collect(),
             signal: self.signal.clone().or(below.signal),
             reference: self.reference.clone().or(below.reference),
             channels: self.channels.clone().or(below.channels),
-            ignore: self.ignore.iter().cloned().chain(below.ignore).collect(),
+            ignore,
             constant_reference: self.constant_reference.or(below.constant_reference),
         }
+    }
+
+    /// These options without what `table` has no column for.
+    fn fitting(&self, table: &Table) -> Self {
+        let mut fitting = self.clone();
+        fitting.map.retain(|name, text| is_there(table, name, text));
+        fitting.signal = fitting.signal.filter(|signal| is_there(table, "delta_f_hz", &signal.column));
+        fitting.reference = fitting.reference.filter(|reference| is_there(table, "reference_g", &reference.column));
+        let has = |name: &String| table.header.contains(name) || fitting.map.contains_key(name);
+        fitting.channels = fitting.channels.filter(|channels| channels.iter().all(has));
+        let has_reference = table.header.iter().any(|name| name == "reference_g");
+        fitting.constant_reference = fitting.constant_reference.filter(|_| !has_reference);
+        fitting
+    }
+
+    fn says_signal(&self) -> bool {
+        self.signal.is_some() || SIGNALS.iter().any(|name| self.map.contains_key(*name))
+    }
+
+    fn forget_signal(&mut self) {
+        self.signal = None;
+        self.map.retain(|name, _| !SIGNALS.contains(&name.as_str()));
+    }
+
+    fn says_reference(&self) -> bool {
+        self.reference.is_some() || self.constant_reference.is_some() || self.map.contains_key(REFERENCE)
+    }
+
+    fn forget_reference(&mut self) {
+        (self.reference, self.constant_reference) = (None, None);
+        self.map.remove(REFERENCE);
     }
 
     /// Every name that is mapped, once, and what stands for it.

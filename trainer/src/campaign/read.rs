@@ -2,7 +2,7 @@
 
 use super::columns::Layout;
 use super::error::{CampaignError, Facts, Place};
-use super::options::ReadOptions;
+use super::options::{ReadAs, ReadOptions};
 use super::rows::{Content, read_rows};
 use super::table::{Table, unreadable};
 use super::{Campaign, Quantity, Run};
@@ -20,10 +20,18 @@ impl Campaign {
     /// # Errors
     /// The first thing that cannot be trusted, with its place; see [`CampaignError`].
     pub fn read(paths: &[PathBuf], options: &ReadOptions) -> Result<Self, CampaignError> {
+        Self::read_like(paths, options, &ReadAs::default())
+    }
+
+    /// Reads as files before were read, which a model file says, unless `options` or a `campaign.toml` say otherwise.
+    ///
+    /// # Errors
+    /// As [`Campaign::read`].
+    pub fn read_like(paths: &[PathBuf], options: &ReadOptions, before: &ReadAs) -> Result<Self, CampaignError> {
         let files = files(paths)?;
         let names = run_names(&files);
         let contents: Vec<_> =
-            files.par_iter().zip(&names).map(|(file, name)| read_file(file, name, options)).collect();
+            files.par_iter().zip(&names).map(|(file, name)| read_file(file, name, options, before)).collect();
         // Collecting before looking makes the first file's error the one that is told.
         merge(contents.into_iter().collect::<Result<_, _>>()?)
     }
@@ -34,14 +42,29 @@ struct File {
     path: PathBuf,
     quantity: Quantity,
     content: Content,
+    read_as: ReadAs,
 }
 
-fn read_file(path: &Path, run_name: &str, options: &ReadOptions) -> Result<File, CampaignError> {
+fn read_file(path: &Path, run_name: &str, options: &ReadOptions, before: &ReadAs) -> Result<File, CampaignError> {
     let table = Table::open(path)?;
-    let options = options.beside(path)?;
+    let read_as = before.for_table(options, &table)?;
+    let options = read_as.merged();
     let layout = Layout::of(&table, &options)?;
     let content = read_rows(&table, layout, run_name)?;
-    Ok(File { path: path.to_owned(), quantity: options.quantity(), content })
+    Ok(File { path: path.to_owned(), quantity: options.quantity(), content, read_as })
+}
+
+/// How all files were read. Where they differ in it, each needs a `campaign.toml` of its own again.
+fn read_as(files: &[File]) -> ReadAs {
+    let [first, others @ ..] = files else { return ReadAs::default() };
+    let mut read_as = first.read_as.clone();
+    if others.iter().any(|file| file.read_as.manifest != read_as.manifest) {
+        read_as.manifest = ReadOptions::default();
+    }
+    if others.iter().any(|file| file.read_as.options != read_as.options) {
+        read_as.options = ReadOptions::default();
+    }
+    read_as
 }
 
 /// The files that the paths stand for.
@@ -108,7 +131,8 @@ fn merge(files: Vec<File>) -> Result<Campaign, CampaignError> {
     let mut runs: Vec<Run> = Vec::new();
     let mut sources: HashMap<String, PathBuf> = HashMap::new();
     let mut ignored = Vec::new();
-    for File { path, quantity: of_file, mut content } in files {
+    let read_as = read_as(&files);
+    for File { path, quantity: of_file, mut content, .. } in files {
         check_quantity(&path, quantity.get_or_insert_with(|| of_file.clone()), &of_file)?;
         let (first, names) = channels.get_or_insert_with(|| (path.clone(), content.channels.clone()));
         arrange(&path, &mut content, first, names)?;
@@ -123,7 +147,7 @@ fn merge(files: Vec<File>) -> Result<Campaign, CampaignError> {
     let mut seen = HashSet::new();
     ignored.retain(|name| seen.insert(name.clone()));
     let channels = channels.map(|(_, names)| names).unwrap_or_default();
-    Ok(Campaign { ignored_columns: ignored, ..Campaign::new(runs, channels, quantity.unwrap_or_default()) })
+    Ok(Campaign { ignored_columns: ignored, read_as, ..Campaign::new(runs, channels, quantity.unwrap_or_default()) })
 }
 
 /// Puts a file's channels into the campaign's order.

@@ -42,6 +42,11 @@ impl<'a> Task<'a> {
         let runs: Vec<(usize, &Run)> =
             split.training.iter().filter_map(|&index| Some((index, campaign.runs.get(index)?))).collect();
         let scale = InputScale::of(runs.iter().map(|(_, run)| *run)).ok_or(TrainError::NoTrainingRuns)?;
+        let mut references = runs.iter().flat_map(|(_, run)| &run.rows).map(|row| row.reference_g);
+        let first_g = references.next();
+        if settings.scale_factor_hz_per_g.is_none() && references.all(|reference_g| Some(reference_g) == first_g) {
+            return Err(TrainError::NoScaleFactor);
+        }
         let data = merged(runs.iter().copied(), &scale);
         let polynomial = match settings.scale_factor_hz_per_g {
             Some(stated) => Polynomial::fit_still(&data, scale.delta_f_half_span_hz / stated, MOST_T),
@@ -126,6 +131,8 @@ impl<'a> Task<'a> {
             training_runs: names(&split.training),
             held_out_runs: names(&split.held_out),
             training_residual: 0.0,
+            scale_factor_hz_per_g: self.settings.scale_factor_hz_per_g,
+            read_as: campaign.read_as.clone(),
         }
     }
 

@@ -1,0 +1,234 @@
+//! A model file, read strictly: what a person mistyped is told with its line, and never taken for something else.
+
+use super::{DeviceLimit, Model, ModelEffect, ModelError};
+use firmware_core::effect::{self, Parameter, Role};
+use serde::Deserialize;
+use serde::de::{DeserializeOwned, Deserializer, Error};
+use std::collections::BTreeMap;
+use std::path::Path;
+use toml::Spanned;
+
+impl Model {
+    /// Reads a model file. What it gives can be put on a device.
+    ///
+    /// # Errors
+    /// [`ModelError`] with the file and, where the text is wrong, the line.
+    pub fn read(path: &Path) -> Result<Self, ModelError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ModelError::Io { path: path.to_path_buf(), source })?;
+        Self::parse(path, &text)
+    }
+
+    /// Reads the text of a model file; `path` names it in errors.
+    ///
+    /// # Errors
+    /// As [`Model::read`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, ModelError> {
+        let path = || path.to_path_buf();
+        let syntax = |source| ModelError::Syntax { path: path(), source: Box::new(source) };
+        // Another version's file may have keys that this one doesn't know: the version is the better reason.
+        let stamp: Stamp = toml::from_str(text).map_err(syntax)?;
+        if let Some(format) = stamp.format.filter(|format| *format.as_ref() != i64::from(Self::FORMAT)) {
+            let (line, found) = (line_at(text, format.span().start), format.into_inner());
+            return Err(ModelError::Format { path: path(), line, found, supported: Self::FORMAT });
+        }
+        let model: Self = toml::from_str(text).map_err(syntax)?;
+        if let Some((index, parameter, value)) = model.beyond_bounds() {
+            let effect = model.effects[index].name.clone();
+            let (line, bounds) = (line_of(text, index, parameter.name), (parameter.low, parameter.high));
+            return Err(ModelError::Bound { path: path(), line, effect, parameter: parameter.name, value, bounds });
+        }
+        model.to_blob().map_err(|source| ModelError::Unusable { path: path(), source })?;
+        Ok(model)
+    }
+
+    /// The first coefficient that makes no physical sense: its effect's index, what it is, its value.
+    fn beyond_bounds(&self) -> Option<(usize, &'static Parameter, f64)> {
+        let of = |(index, effect): (usize, &ModelEffect)| {
+            let about = effect::about(&effect.name)?;
+            // Where a channel counts from is measured, whatever the channel is.
+            let judged = about.parameters.iter().filter(|parameter| parameter.role != Role::Origin);
+            let mut values = judged.filter_map(|about| Some((about, *effect.parameters.get(about.name)?)));
+            let (parameter, value) = values.find(|(about, value)| !(about.low..=about.high).contains(value))?;
+            Some((index, parameter, value))
+        };
+        self.effects.iter().enumerate().find_map(of)
+    }
+}
+
+/// All that every version's file has.
+#[derive(Deserialize)]
+struct Stamp {
+    format: Option<Spanned<i64>>,
+}
+
+/// Where the coefficients stand.
+#[derive(Deserialize)]
+struct Places {
+    effect: Vec<EffectPlaces>,
+}
+
+#[derive(Deserialize)]
+struct EffectPlaces {
+    parameters: BTreeMap<String, Spanned<f64>>,
+}
+
+/// The line of one coefficient.
+fn line_of(text: &str, effect: usize, parameter: &str) -> usize {
+    let places: Option<Places> = toml::from_str(text).ok();
+    let place = places.as_ref().and_then(|places| places.effect.get(effect)?.parameters.get(parameter));
+    line_at(text, place.map_or(0, |place| place.span().start))
+}
+
+fn line_at(text: &str, offset: usize) -> usize {
+    text.bytes().take(offset).filter(|byte| *byte == b'\n').count() + 1
+}
+
+/// An array of exactly `N` entries. TOML's own reading of an array leaves surplus entries unread.
+pub(super) fn exactly<'de, D, T, const N: usize>(deserializer: D) -> Result<[T; N], D::Error>
+where
+    D: Deserializer<'de>,
+    T: DeserializeOwned,
+{
+    let entries = Vec::<T>::deserialize(deserializer)?;
+    entries.try_into().map_err(|entries: Vec<T>| wrong_length(entries.len(), N))
+}
+
+/// The same of rows of exactly `M` entries.
+pub(super) fn rows_exactly<'de, D, T, const N: usize, const M: usize>(deserializer: D) -> Result<[[T; M]; N], D::Error>
+where
+    D: Deserializer<'de>,
+    T: DeserializeOwned,
+{
+    let rows: [Vec<T>; N] = exactly(deserializer)?;
+    let row = |row: Vec<T>| row.try_into().map_err(|row: Vec<T>| wrong_length(row.len(), M));
+    let rows = rows.into_iter().map(row).collect::<Result<Vec<[T; M]>, D::Error>>()?;
+    rows.try_into().map_err(|rows: Vec<[T; M]>| wrong_length(rows.len(), N))
+}
+
+fn wrong_length<E: Error>(found: usize, expected: usize) -> E {
+    E::custom(format_args!("{found} entries, expected {expected}"))
+}
+
+impl ModelError {
+    /// The way out.
+    #[must_use]
+    pub fn help(&self) -> Option<String> {
+        Some(match self {
+            Self::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
+                "make one with `tempco train DATA -o model.toml`".to_owned()
+            }
+            Self::Io { .. } => return None,
+            Self::Syntax { .. } => {
+                "mend that line, or train the model again: `tempco train DATA -o model.toml`".to_owned()
+            }
+            Self::Format { .. } => {
+                "read it with the version that wrote it (`made_by` in the file), or train the model again with this one"
+                    .to_owned()
+            }
+            Self::Bound { effect, .. } => {
+                format!("`tempco effects {effect}` explains its parameters; `tempco add` finds them from measurements")
+            }
+            Self::Unusable { source, .. } | Self::Device(source) => return source.help().map(str::to_owned),
+        })
+    }
+}
+
+impl DeviceLimit {
+    /// The way out, where there is one.
+    #[must_use]
+    pub fn help(&self) -> Option<&'static str> {
+        match self {
+            Self::ScaleFactor | Self::Load(firmware_core::LoadError::Slope { .. }) => Some(
+                "train the model again, with --scale-factor if the reference never varies; with levels in between if it does",
+            ),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::example::model;
+    use super::*;
+
+    fn refused(text: &str) -> String {
+        let error = Model::parse(Path::new("m.toml"), text).expect_err("refused");
+        assert!(error.help().is_some(), "{error}");
+        error.to_string()
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let model = model();
+        let text = model.to_text();
+        assert_eq!(Model::parse(Path::new("m.toml"), &text).expect("a model"), model, "{text}");
+        assert!(text.contains("constant_reference = 0.5"), "{text}");
+    }
+
+    #[test]
+    fn another_format_is_refused_by_its_line_whatever_else_the_file_has() {
+        let text = model().to_text().replace("format = 1", "# newer\nformat = 2\nsurprise = true");
+        assert_eq!(refused(&text), "m.toml:2: model format 2, this version reads 1");
+        assert!(refused(&model().to_text().replace("format = 1", "format = 0")).contains("model format 0"));
+        assert!(refused(&model().to_text().replace("format = 1", "")).contains("missing field `format`"));
+    }
+
+    #[test]
+    fn surplus_and_missing_entries_are_refused_with_their_line() {
+        let text = model().to_text();
+        for (key, entries) in
+            [("bias", 10), ("output", 10), ("input", 10), ("line_g", 4), ("delta_f_uhz", 2), ("temperature_uc", 2)]
+        {
+            let start = text.find(&format!("\n{key} = [")).expect(key) + 1;
+            let end = start + text[start..].find('\n').expect("a line");
+            let line = text[..start].matches('\n').count() + 1;
+            let last = text[start..end].rfind(']').expect("an end") + start;
+            let more = if key == "input" { ", [0.0, 0.0]" } else { ", 7" }
+                .replace('7', if key.ends_with("_g") { "7.0" } else { "7" });
+            let more = if key == "bias" || key == "output" { ", 7.0".to_owned() } else { more };
+            let surplus = format!("{}{more}{}", &text[..last], &text[last..]);
+            let told = refused(&surplus);
+            assert!(told.contains(&format!("{} entries, expected {entries}", entries + 1)), "{key}: {told}");
+            assert!(told.contains(&format!("line {line}")), "{key}: {told}");
+        }
+        assert!(refused(&text.replace("[[0.", "[[0.5, 0.")).contains("3 entries, expected 2"));
+    }
+
+    #[test]
+    fn unknown_keys_are_refused_wherever_they_stand() {
+        let text = model().to_text();
+        for section in ["[provenance]", "[units]", "[scaling]", "[domain]", "[network]", "[[effect]]"] {
+            let told = refused(&text.replacen(section, &format!("{section}\nsurprise = 1"), 1));
+            assert!(told.contains("unknown field `surprise`"), "{section}: {told}");
+        }
+    }
+
+    #[test]
+    fn a_coefficient_beyond_its_bounds_is_refused_with_its_line() {
+        let text = model().to_text();
+        let line = text.lines().position(|line| line.starts_with("tau_s = ")).expect("a time constant") + 1;
+        for value in ["-5.0", "0.0", "1e9", "nan"] {
+            let wrong = text.replace("tau_s = 40.0", &format!("tau_s = {value}"));
+            let told = refused(&wrong);
+            assert!(told.starts_with(&format!("m.toml:{line}: effect `thermal-lag`: tau_s = ")), "{told}");
+        }
+    }
+
+    #[test]
+    fn a_model_without_a_slope_is_refused() {
+        let mut model = model();
+        (model.scaling.line_g, model.scaling.output_g) = ([0.3, 0.0, 0.1, 0.0], 0.0);
+        let told = refused(&model.to_text());
+        assert!(told.contains("slope"), "{told}");
+    }
+
+    #[test]
+    fn a_model_with_another_slope_than_was_stated_is_refused() {
+        // 0.0125 g per Hz · 1 is 80 Hz/g, and 420 was stated.
+        let told = refused(&model().to_text().replace("scale_factor_hz_per_g = 80.0", "scale_factor_hz_per_g = 420.0"));
+        assert!(told.contains("the scale factor that was stated"), "{told}");
+        let turned = model().to_text().replace("scale_factor_hz_per_g = 80.0", "scale_factor_hz_per_g = -80.0");
+        assert!(refused(&turned).contains("the scale factor that was stated"));
+    }
+}
