@@ -1,0 +1,257 @@
+//! Campaigns, small and sound, and then spoilt.
+
+use super::random::Random;
+
+/// A table as bytes, the options that go with it, and what was done to it.
+pub struct Spoilt {
+    pub bytes: Vec<u8>,
+    pub options: Vec<String>,
+    pub training: Vec<String>,
+    pub how: Vec<&'static str>,
+}
+
+/// Header and cells.
+struct Table {
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+const NUMBERS: [&str; 26] = [
+    "NaN",
+    "inf",
+    "-inf",
+    "1e30",
+    "-1e30",
+    "1e308",
+    "1e-308",
+    "5e-324",
+    "-0",
+    "0",
+    "",
+    " ",
+    "9223372036854775807",
+    "-9223372036854.775808",
+    "1e18",
+    "1.7e9",
+    "-1",
+    "85",
+    "-127",
+    "1e5",
+    "abc",
+    "1,5",
+    "0x10",
+    "\u{1b}[31m",
+    "1e",
+    "٣",
+];
+const HEADERS: [&str; 9] =
+    ["", "time_s", "reference_g", "temperature_c", "run", "\u{1b}]0;x\u{7}", "a,b", "f1_hz", "power_on_s"];
+const EFFECTS_ON: [&str; 5] = ["supply_v", "humidity_pct", "pressure_pa", "vibration_g2", "age_days"];
+
+/// A sound campaign of few rows and many kinds.
+fn sound(random: &mut Random) -> Table {
+    let (runs, rows) = (1 + random.below(5), 20 + random.below(60));
+    let pair = random.below(3) == 0;
+    let mut header: Vec<String> = ["run", "kind", "time_s", "temperature_c", "reference_g"].map(str::to_owned).to_vec();
+    header.extend(if pair { vec!["f1_hz".to_owned(), "f2_hz".to_owned()] } else { vec!["delta_f_hz".to_owned()] });
+    let channels = random.below(3);
+    header.extend((0..channels).map(|channel| EFFECTS_ON[channel].to_owned()));
+    let kind = random.of(&["full", "zero", "ramp", "tumble", "static"]).to_owned();
+    let still = random.below(6) == 0;
+    let mut table = Table { header, rows: Vec::new() };
+    for run in 0..runs {
+        for row in 0..rows {
+            let temperature_c = 20.0 + 40.0 * (row as f64 / rows as f64 * 6.3).sin();
+            let reference_g = if still { 0.0 } else { [-1.0, -0.5, 0.0, 0.5, 1.0, 0.966][(row / 4) % 6] };
+            let delta_hz = 76.0 + 420.0 * reference_g + 0.03 * temperature_c + 2e-3 * random.unit();
+            let mut cells = vec![
+                format!("{kind}-{run}"),
+                kind.clone(),
+                format!("{}", row * 10),
+                format!("{temperature_c:.4}"),
+                format!("{reference_g}"),
+            ];
+            match pair {
+                true => cells.extend([format!("{:.6}", 40_000.0 + delta_hz), "40000.0".to_owned()]),
+                false => cells.push(format!("{delta_hz:.6}")),
+            }
+            cells.extend((0..channels).map(|channel| format!("{:.4}", 5.0 + channel as f64 + 0.1 * random.unit())));
+            table.rows.push(cells);
+        }
+    }
+    table
+}
+
+/// Spoils a sound campaign in one to three ways.
+pub fn spoilt(random: &mut Random) -> Spoilt {
+    let mut table = sound(random);
+    let mut how = Vec::new();
+    for _ in 0..1 + random.below(3) {
+        how.push(spoil(&mut table, random));
+    }
+    let mut bytes = written(&table, random.of(&[",", ",", ",", ";", "\t"]));
+    if random.below(4) == 0 {
+        how.push(spoil_bytes(&mut bytes, random));
+    }
+    Spoilt { bytes, options: options(random), training: training(random), how }
+}
+
+fn written(table: &Table, separator: &str) -> Vec<u8> {
+    let mut text = table.header.join(separator) + "\n";
+    for row in &table.rows {
+        text += &row.join(separator);
+        text.push('\n');
+    }
+    text.into_bytes()
+}
+
+/// The numbers of one column, put through `change` where they are numbers.
+fn change(table: &mut Table, column: usize, change: impl Fn(f64) -> f64) {
+    for row in &mut table.rows {
+        if let Some(number) = row.get(column).and_then(|cell| cell.parse::<f64>().ok()) {
+            row[column] = format!("{:?}", change(number));
+        }
+    }
+}
+
+fn spoil(table: &mut Table, random: &mut Random) -> &'static str {
+    let (column, row) = (random.below(table.header.len()), random.below(table.rows.len()));
+    match random.below(14) {
+        0 => {
+            set(table, row, column, random.of(&NUMBERS));
+            "one cell"
+        }
+        1 => {
+            (0..5).for_each(|_| {
+                let (row, column) = (random.below(table.rows.len()), 2 + random.below(5));
+                set(table, row, column, random.of(&["0", "85", "-127", "1e5", "1e30", "-1e9", "1e-30"]));
+            });
+            "some cells"
+        }
+        2 => {
+            let scale = 10_f64.powi(random.below(49) as i32 - 24);
+            change(table, column, |number| number * scale);
+            "a column scaled"
+        }
+        3 => {
+            change(table, column, |number| -number);
+            "a column negated"
+        }
+        4 => {
+            let shift = [1e3, 1.7e9, -1e6, 1e12, 273.15, 1e18][random.below(6)];
+            change(table, column, |number| number + shift);
+            "a column shifted"
+        }
+        5 => {
+            let value = random.of(&["0", "1", "-1", "1e-9", "1e9"]);
+            (0..table.rows.len()).for_each(|row| set(table, row, column, value));
+            "a column constant"
+        }
+        6 => {
+            let other = random.below(table.header.len());
+            table.header.swap(column, other);
+            "two names swapped"
+        }
+        7 => {
+            table.header[column] = random.of(&HEADERS).to_owned();
+            "a name spoilt"
+        }
+        8 => {
+            let other = random.below(table.rows.len());
+            table.rows.swap(row, other);
+            "rows swapped"
+        }
+        9 => {
+            table.rows = table.rows.iter().flat_map(|row| [row.clone(), row.clone()]).collect();
+            "rows doubled"
+        }
+        10 => {
+            table.rows.truncate(row);
+            "cut short"
+        }
+        11 => {
+            table.rows.iter_mut().for_each(|row| drop(row.pop()));
+            "the last column without values"
+        }
+        12 => {
+            table.rows.iter_mut().enumerate().for_each(|(index, row)| row[0] = format!("run-{}", index / 3));
+            "a run for every three rows"
+        }
+        _ => {
+            let names = ["\u{1b}[2J", "a\rb", "\u{202e}evil", "'; rm x; '", "", "run,run", "\u{0}"];
+            let name = random.of(&names);
+            table.rows.iter_mut().for_each(|row| row[0] = name.to_owned());
+            "a run's name spoilt"
+        }
+    }
+}
+
+fn set(table: &mut Table, row: usize, column: usize, value: &str) {
+    if let Some(cell) = table.rows.get_mut(row).and_then(|row| row.get_mut(column)) {
+        value.clone_into(cell);
+    }
+}
+
+fn spoil_bytes(bytes: &mut Vec<u8>, random: &mut Random) -> &'static str {
+    let at = random.below(bytes.len());
+    match random.below(5) {
+        0 => {
+            bytes.truncate(at);
+            "bytes cut off"
+        }
+        1 => {
+            bytes.insert(at, 0);
+            "a NUL"
+        }
+        2 => {
+            bytes[at] = random.next() as u8;
+            "a byte changed"
+        }
+        3 => {
+            bytes.splice(0..0, *b"\xef\xbb\xbf# x\r\n");
+            "a mark and a comment before it"
+        }
+        _ => {
+            bytes.splice(at..at, std::iter::repeat_n(b'7', 100_000));
+            "a long run of digits"
+        }
+    }
+}
+
+/// Options of reading, mostly none.
+fn options(random: &mut Random) -> Vec<String> {
+    let choices: [&[&str]; 12] = [
+        &[],
+        &[],
+        &[],
+        &[],
+        &[],
+        &[],
+        &["--constant-reference", "0"],
+        &["--constant-reference", "1e30"],
+        &["--map", "time_s=row*1e300"],
+        &["--map", "temperature_c=reference_g*1e9"],
+        &["--signal", "delta_f_hz", "--signal-unit", "ppm"],
+        &["--channels", "supply_v"],
+    ];
+    choices[random.below(choices.len())].iter().map(|&word| word.to_owned()).collect()
+}
+
+/// Options of training, mostly none.
+fn training(random: &mut Random) -> Vec<String> {
+    let choices: [&[&str]; 12] = [
+        &[],
+        &[],
+        &[],
+        &[],
+        &[],
+        &["--scale-factor", "420"],
+        &["--scale-factor", "0"],
+        &["--scale-factor", "-1e300"],
+        &["--scale-factor", "nan"],
+        &["--hold-out", "none"],
+        &["--hold-out", "full-0"],
+        &["--restarts", "0"],
+    ];
+    choices[random.below(choices.len())].iter().map(|&word| word.to_owned()).collect()
+}
