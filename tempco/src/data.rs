@@ -79,9 +79,12 @@ impl Reading {
     pub fn read_for(&self, files: &[PathBuf], model: &Model) -> Result<Campaign, Failure> {
         let before = &model.provenance.read_as;
         let campaign = self.read(files, before)?;
-        let words: Vec<String> = [&before.options, &before.manifest].into_iter().flat_map(words).collect();
-        if !words.is_empty() {
-            anstream::eprintln!("Read as the model's campaign was, where nothing else is said: {}", words.join(" "));
+        check_units(model, &campaign)?;
+        let given: Vec<String> = self.words().collect();
+        let in_force: Vec<String> = spelt(&campaign.read_as).filter(|words| !given.contains(words)).collect();
+        let kept: Vec<String> = spelt(before).filter(|words| in_force.contains(words)).collect();
+        if !kept.is_empty() {
+            anstream::eprintln!("Read as the model's campaign was: {}", kept.join(" "));
         }
         Ok(campaign)
     }
@@ -109,6 +112,24 @@ impl Reading {
     fn words(&self) -> impl Iterator<Item = String> + use<> {
         words(&self.options().unwrap_or_default())
     }
+}
+
+/// A model of one quantity says nothing about another.
+fn check_units(model: &Model, campaign: &Campaign) -> Result<(), Failure> {
+    let (units, quantity) = (&model.units, &campaign.quantity);
+    if (&units.signal, &units.reference) == (&quantity.signal_unit, &quantity.reference_unit) {
+        return Ok(());
+    }
+    let text = |signal: &str, reference: &str| format!("a signal in {signal} and a reference in {reference}");
+    let (model, found) = (text(&units.signal, &units.reference), text(&quantity.signal_unit, &quantity.reference_unit));
+    Err(Failure::new(format_args!("the model is of {model}, the campaign of {found}")).help(format_args!(
+        "name the columns and convert where needed: --signal \"COLUMN*1\" --signal-unit {} --reference \"COLUMN*1\" --reference-unit {}",
+        units.signal, units.reference
+    )))
+}
+
+fn spelt(read_as: &ReadAs) -> impl Iterator<Item = String> {
+    [&read_as.options, &read_as.manifest].into_iter().flat_map(words)
 }
 
 /// Options as they are typed.

@@ -135,6 +135,17 @@ fn an_option_overrides_what_the_model_keeps() {
 }
 
 #[test]
+fn a_model_of_another_quantity_is_told_apart() {
+    let folder = trained();
+    let units = ["--signal", "FreqDiff", "--signal-unit", "ppm"];
+    let error = told(folder.path(), &[&["compare", "model.toml", "still.csv"][..], &units].concat(), 2);
+    assert!(
+        error.contains("the model is of a signal in Hz and a reference in g, the campaign of a signal in ppm"),
+        "{error}"
+    );
+}
+
+#[test]
 fn a_manifest_serves_data_that_lost_it_and_gives_way_to_another_one() {
     let folder = files();
     let at = folder.path();
