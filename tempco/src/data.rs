@@ -1,6 +1,7 @@
 //! Options that several commands share: which measurements, which runs.
 
 use crate::failure::Failure;
+use crate::shell;
 use clap::Args;
 use std::path::PathBuf;
 use trainer::campaign::{Campaign, HoldOut, Measured, ReadAs, ReadOptions};
@@ -65,7 +66,7 @@ impl Data {
 
     /// The same on a command line, to be typed again.
     pub fn command_line(&self) -> String {
-        let files = self.files.iter().map(|file| quoted(&file.display().to_string()));
+        let files = self.files.iter().map(|file| shell::path(file));
         files.chain(self.reading.words()).collect::<Vec<_>>().join(" ")
     }
 }
@@ -109,8 +110,11 @@ impl Reading {
     }
 
     /// The options that were given, as they are typed.
-    fn words(&self) -> impl Iterator<Item = String> + use<> {
-        words(&self.options().unwrap_or_default())
+    fn words(&self) -> impl Iterator<Item = String> {
+        let maps = self.map.iter().map(|pair| shell::option("--map", pair));
+        // A mapping that can't be read is typed again as it was.
+        let unmapped = Self { map: Vec::new(), ..self.clone() };
+        maps.chain(words(&unmapped.options().unwrap_or_default()))
     }
 }
 
@@ -146,13 +150,7 @@ fn words(options: &ReadOptions) -> impl Iterator<Item = String> + use<> {
         ("--ignore", list(&options.ignore)),
     ];
     let maps: Vec<_> = options.map.iter().map(|(name, text)| ("--map", Some(format!("{name}={text}")))).collect();
-    maps.into_iter().chain(one).filter_map(|(name, value)| Some(format!("{name} {}", quoted(&value?))))
-}
-
-/// As a shell takes it for one word.
-pub fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./=,+:".contains(c);
-    if word.chars().all(plain) { word.to_owned() } else { format!("'{word}'") }
+    maps.into_iter().chain(one).filter_map(|(name, value)| Some(shell::option(name, &value?)))
 }
 
 fn measured(column: Option<&String>, unit: Option<&String>) -> Option<Measured> {

@@ -16,6 +16,7 @@ mod recordings;
 mod region;
 mod render;
 mod report;
+mod shell;
 mod subject;
 mod table;
 mod workbench;

@@ -7,6 +7,7 @@ use super::train::{Simpler, train_with_bar};
 use super::{export, reveal, verify};
 use crate::failure::{Answer, Failure};
 use crate::render::diagnosis;
+use crate::shell;
 use crate::table::Table;
 use clap::Args;
 use firmware_sim::scenario::Scenario;
@@ -117,7 +118,7 @@ impl Demo {
     fn further(&self, data: &Path) {
         let model = self.output.join("model.toml");
         anstream::println!("The files are in {}.", self.output.display());
-        anstream::println!("Look closer:   tempco diagnose {} {}", model.display(), data.display());
+        anstream::println!("Look closer:   tempco diagnose {} {}", shell::path(&model), shell::path(data));
         anstream::println!("Another seed:  tempco demo --seed {}", self.seed + 1);
     }
 }

@@ -4,6 +4,7 @@ use crate::data::Data;
 use crate::failure::{Answer, Failure};
 use crate::progress::spinner;
 use crate::render::diagnosis;
+use crate::shell;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use trainer::campaign::Campaign;
@@ -55,12 +56,12 @@ pub fn diagnosed(model: &Model, campaign: &Campaign) -> Result<Diagnosis, Failur
 
 /// What a person types next.
 fn next(diagnosis: &Diagnosis, model: &Path, data: &str) -> String {
-    let model = model.display();
+    let model = shell::path(model);
     if let Some(effect) = diagnosis::first_to_add(diagnosis) {
         return format!("tempco add {model} {effect} {data} -o better.toml");
     }
     if let Some(formula) = diagnosis.unexplained.as_ref().and_then(|unexplained| unexplained.formula.as_ref()) {
-        return format!("tempco add {model} --expression \"{formula}\" {data} -o better.toml");
+        return format!("tempco add {model} {} {data} -o better.toml", shell::option("--expression", formula));
     }
     match diagnosis.verdict {
         Verdict::NothingMissing => format!("tempco export {model} -o calibration.hex"),

@@ -6,6 +6,7 @@ use crate::failure::{Answer, Failure};
 use crate::progress::spinner;
 use crate::recordings::{self, Proposed};
 use crate::render;
+use crate::shell::{self, option};
 use clap::Args;
 use firmware_core::effect::about;
 use std::path::{Path, PathBuf};
@@ -71,7 +72,7 @@ impl Plan {
 
     /// What a person does next.
     fn next(&self, best: Option<&Proposed>, file: Option<&Path>) -> String {
-        let (model, data) = (self.model.display(), self.data.command_line());
+        let (model, data) = (shell::path(&self.model), self.data.command_line());
         let Some(best) = best else {
             return "No recording here tells them apart any better. Record another quantity: f1 and f2 beside their \
                     difference, or the channel that the effect follows (`tempco effects NAME` says what it needs)."
@@ -88,7 +89,7 @@ impl Plan {
              new.csv -o model2.toml && tempco diagnose model2.toml {data} new.csv",
             best.scenario.name,
             file.display(),
-            file.display()
+            shell::path(file)
         )
     }
 }
@@ -105,7 +106,7 @@ pub struct Wish {
 impl Wish {
     /// The options that it is on a command line.
     pub fn words(&self) -> String {
-        let effects = (!self.effects.is_empty()).then(|| format!(" --effects {}", self.effects.join(",")));
+        let effects = (!self.effects.is_empty()).then(|| format!(" {}", option("--effects", &self.effects.join(","))));
         let hours = self.hours.map(|hours| format!(" --hours {hours}"));
         effects.into_iter().chain(hours).collect()
     }

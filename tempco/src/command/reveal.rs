@@ -1,6 +1,7 @@
 //! `tempco reveal campaign.sealed`
 
 use crate::failure::{Answer, Failure};
+use crate::shell;
 use crate::table::Table;
 use clap::Args;
 use firmware_sim::seal::{CampaignDigest, HiddenEffect, SealError, SealedTruth, open};
@@ -40,7 +41,7 @@ pub fn opened(sealed: &Path, campaign: &Path) -> Result<SealedTruth, Failure> {
     let digest = CampaignDigest::of([std::fs::read(campaign).map_err(|error| {
         Failure::io(campaign, &error).help(format_args!(
             "name the campaign that the truth belongs to:  tempco reveal {} CAMPAIGN",
-            sealed.display()
+            shell::path(sealed)
         ))
     })?]);
     open(&text, &digest).map_err(|error| refused(sealed, campaign, &error))
@@ -52,7 +53,7 @@ fn refused(sealed: &Path, campaign: &Path, error: &SealError) -> Failure {
         SealError::OtherCampaign { .. } => failure.help(format_args!(
             "{} is another campaign, or was changed since; name the right one:  tempco reveal {} CAMPAIGN",
             campaign.display(),
-            sealed.display()
+            shell::path(sealed)
         )),
         SealError::NotSealed { .. } => failure.help("`tempco simulate --blind` writes one beside its campaign"),
         SealError::OtherVersion { .. } => failure.help("open it with the version that sealed it"),

@@ -1,9 +1,10 @@
 //! `tempco train DATA -o model.toml`
 
-use crate::data::{Data, HeldOut, quoted};
+use crate::data::{Data, HeldOut};
 use crate::failure::{Answer, Failure};
 use crate::progress::Restarts;
 use crate::render;
+use crate::shell::option;
 use crate::table::Table;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
@@ -101,8 +102,8 @@ impl Training {
             (self.method != usual.method).then(|| format!("--method {}", self.method.method().name())),
             (self.restarts != usual.restarts).then(|| format!("--restarts {}", self.restarts)),
             (self.seed != usual.seed).then(|| format!("--seed {}", self.seed)),
-            self.scale_factor.map(|hz_per_g| format!("--scale-factor {hz_per_g}")),
-            (!self.serial.is_empty()).then(|| format!("--serial {}", quoted(&self.serial))),
+            self.scale_factor.map(|hz_per_g| option("--scale-factor", &hz_per_g.to_string())),
+            (!self.serial.is_empty()).then(|| option("--serial", &self.serial)),
         ]
         .into_iter()
         .flatten()

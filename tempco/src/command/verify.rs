@@ -4,6 +4,7 @@ use crate::data::Data;
 use crate::failure::{Answer, Failure};
 use crate::link::{AnyLink, PORTS, Port};
 use crate::progress::bar;
+use crate::shell;
 use clap::Args;
 use protocol::{Blob, Signed};
 use serde::Serialize;
@@ -73,8 +74,9 @@ impl Verify {
             anstream::println!("{:#}", serde_json::json!({ "samples": 0, "identical": 0, "other_calibration": true }));
         } else {
             anstream::println!(
-                "The instrument holds another calibration than {0}. Write this one with  tempco flash {0} --to PORT",
-                self.model.display()
+                "The instrument holds another calibration than {}. Write this one with  tempco flash {} --to PORT",
+                self.model.display(),
+                shell::path(&self.model)
             );
         }
         Ok(Answer::No)

@@ -102,7 +102,7 @@ globalThis.charts = globalThis.charts ?? {};
       outline: () => element("rect", { class: kind, x: 2, y: 2, width: 18, height: 8 }),
     };
     swatch.append(pictures[layer.mark]());
-    item.append(swatch, layer.name);
+    item.append(swatch, globalThis.charts.visible(layer.name));
     return item;
   }
 

@@ -10,7 +10,7 @@ globalThis.charts = globalThis.charts ?? {};
   function element(name, attributes = {}, ...children) {
     const made = document.createElementNS(SVG, name);
     for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-    made.append(...children);
+    made.append(...children.map((child) => (typeof child === "string" ? globalThis.charts.visible(child) : child)));
     return made;
   }
 

@@ -25,7 +25,7 @@ globalThis.charts = globalThis.charts ?? {};
         ring.setAttribute("cx", found.px);
         ring.setAttribute("cy", found.py);
       }
-      words.textContent = found ? found.words() : "\u00a0";
+      words.textContent = found ? globalThis.charts.visible(found.words()) : "\u00a0";
     };
     keys(svg, marks, show, () => back(drawn));
     svg.addEventListener("pointermove", (event) => show(nearest(marks, inside(svg, event))));

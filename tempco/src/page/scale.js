@@ -1,4 +1,4 @@
-// Axes: from values to pixels, round ticks, and numbers as people write them.
+// Axes: from values to pixels, round ticks, and numbers and names as people read them.
 "use strict";
 
 globalThis.charts = globalThis.charts ?? {};
@@ -63,5 +63,9 @@ globalThis.charts = globalThis.charts ?? {};
     return fixed(value, Math.max(0, significant - 1 - power));
   }
 
-  Object.assign(globalThis.charts, { scale, number });
+  // What a foreign name would hide or turn around, by its number: control characters, joiners, marks of direction.
+  const HIDDEN = /[\p{Cc}\p{Cf}\p{Zl}\p{Zp}]/gu;
+  const visible = (text) => String(text).replace(HIDDEN, (letter) => `\\u{${letter.codePointAt(0).toString(16)}}`);
+
+  Object.assign(globalThis.charts, { scale, number, visible });
 })();

@@ -27,8 +27,8 @@ impl From<Failure> for Refusal {
     }
 }
 
-/// What is to be done with the session once work has ended.
-pub type Finish = Box<dyn FnOnce(&mut Session) + Send>;
+/// What is to be done with the session, and with files, once work has ended that nobody stopped.
+pub type Finish = Box<dyn FnOnce(&mut Session) -> Result<(), Failure> + Send>;
 
 /// What a thread does; it may look whether it is to stop, and tell how far it is.
 pub type Work = Box<dyn FnOnce(&Job) -> Result<Finish, Failure> + Send>;
@@ -70,10 +70,7 @@ impl Bench {
     pub fn start(self: &Arc<Self>, task: Task) -> Result<(), Refusal> {
         let Task { step, what, command, work } = task;
         let mut session = self.session();
-        if session.is_busy() {
-            let failure = Failure::new("something else is at work").help("wait for it, or stop it first");
-            return Err(Refusal { status: StatusCode::CONFLICT, failure });
-        }
+        session.idle()?;
         let job = Arc::new(Job::new(session.next_job(), step, what, command, self.changed.clone()));
         session.begin(Arc::clone(&job));
         drop(session);
@@ -87,13 +84,24 @@ impl Bench {
     }
 }
 
+impl Session {
+    /// Refuses while work goes on.
+    pub fn idle(&self) -> Result<(), Refusal> {
+        if !self.is_busy() {
+            return Ok(());
+        }
+        let failure = Failure::new("something else is at work").help("wait for it, or stop it first");
+        Err(Refusal { status: StatusCode::CONFLICT, failure })
+    }
+}
+
 /// What stopped work found is thrown away: nothing in a session is without a command line that gives the same.
 fn conclude(session: &mut Session, job: &Job, outcome: Result<Finish, Failure>) {
     session.end();
-    match outcome {
-        _ if job.is_stopped() => session.stopped = Some(job.step),
-        Ok(finish) => finish(session),
-        Err(failure) => session.refused = Some(Refused { step: job.step, failure }),
+    if job.is_stopped() {
+        session.stopped = Some(job.step);
+    } else if let Err(failure) = outcome.and_then(|finish| finish(session)) {
+        session.refused = Some(Refused { step: job.step, failure });
     }
 }
 

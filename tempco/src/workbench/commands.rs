@@ -2,61 +2,69 @@
 
 use super::session::{Entry, Measured};
 use crate::command::train::Training;
-use crate::data::{HeldOut, quoted};
+use crate::data::HeldOut;
+use crate::shell::{self, option, word};
 use std::path::Path;
 use trainer::train::EffectChoice;
 
 pub fn simulate(scenario: &str, seed: u64, output: &Path) -> String {
-    format!("tempco simulate {scenario} --blind --effects-at-most 1 --seed {seed} -o {}", word(output))
+    format!("tempco simulate {scenario} --blind --effects-at-most 1 --seed {seed} -o {}", shell::path(output))
 }
 
 pub fn inspect(data: &str) -> String {
     format!("tempco inspect {data}")
 }
 
-pub fn train(measured: &Measured, training: &Training, output: &Path) -> String {
+/// Without the model's place: see [`into`].
+pub fn train(measured: &Measured, training: &Training) -> String {
     let hold_out = hold_out(&measured.held_out).into_iter().chain(training.words());
     let options: String = hold_out.map(|word| format!(" {word}")).collect();
-    format!("tempco train {}{options} -o {}", measured.data.command_line(), word(output))
+    format!("tempco train {}{options}", measured.data.command_line())
 }
 
 pub fn compare(file: &Path, data: &str) -> String {
-    format!("tempco compare {} {data}", word(file))
+    format!("tempco compare {} {data}", shell::path(file))
 }
 
 pub fn diagnose(file: &Path, data: &str) -> String {
-    format!("tempco diagnose {} {data}", word(file))
+    format!("tempco diagnose {} {data}", shell::path(file))
 }
 
-/// `add` or `remove`.
-pub fn change(verb: &str, entry: &Entry, effect: &EffectChoice, data: &str, output: &Path) -> String {
-    let what = match &effect.expression {
-        Some(text) => format!("--expression \"{text}\""),
-        None => effect.name.clone(),
-    };
-    format!("tempco {verb} {} {what} {data} -o {}", word(&entry.file), word(output))
+/// `add` or `remove`, without the new model's place: see [`into`].
+pub fn change(verb: &str, entry: &Entry, effect: &EffectChoice, data: &str) -> String {
+    let what = effect.expression.as_ref().map_or_else(|| word(&effect.name), |text| option("--expression", text));
+    format!("tempco {verb} {} {what} {data}", shell::path(&entry.file))
 }
 
-pub fn export(file: &Path, output: &Path) -> String {
-    format!("tempco export {} -o {}", word(file), word(output))
+/// A command that writes there.
+pub fn into(command: &str, output: &Path) -> String {
+    format!("{command} -o {}", shell::path(output))
+}
+
+/// Both formats.
+pub fn export(file: &Path, hex: &Path, bin: &Path) -> String {
+    let command = format!("tempco export {}", shell::path(file));
+    format!("{} && {}", into(&command, hex), into(&command, bin))
 }
 
 pub fn verify(file: &Path, data: &str) -> String {
-    format!("tempco verify {} {data}", word(file))
+    format!("tempco verify {} {data}", shell::path(file))
 }
 
-pub fn plan(file: &Path, data: &str, output: &Path) -> String {
-    format!("tempco plan {} {data} -o {}", word(file), word(output))
+/// Without the folder: see [`into`].
+pub fn plan(file: &Path, data: &str) -> String {
+    format!("tempco plan {} {data}", shell::path(file))
+}
+
+/// A rehearsal of what was planned.
+pub fn rehearse(scenario: &Path) -> String {
+    format!("tempco simulate {} -o new.csv", shell::path(scenario))
 }
 
 pub fn reveal(envelope: &Path, campaign: &Path) -> String {
-    format!("tempco reveal {} {}", word(envelope), word(campaign))
+    format!("tempco reveal {} {}", shell::path(envelope), shell::path(campaign))
 }
 
 fn hold_out(held_out: &HeldOut) -> Option<String> {
-    held_out.hold_out.as_ref().map(|names| format!("--hold-out {}", quoted(&names.join(","))))
-}
-
-fn word(path: &Path) -> String {
-    quoted(&path.display().to_string())
+    held_out.hold_out.as_ref().map(|names| option("--hold-out", &names.join(",")))
 }

@@ -2,7 +2,7 @@
 
 use super::bench::{Bench, Refusal};
 use super::guard::{Guard, seal};
-use super::{First, Settings, assets, events, launch, samples, uploads, verb};
+use super::{First, Settings, assets, events, launch, places, samples, uploads, verb};
 use crate::failure::Failure;
 use axum::body::Bytes;
 use axum::extract::{DefaultBodyLimit, Request, State};
@@ -22,6 +22,7 @@ pub fn serve(settings: Settings) -> Result<(), Failure> {
     let listener = bind(port)?;
     let port = listener.local_addr().map_err(Failure::new)?.port();
     let guard = Guard::new(port)?;
+    let _claim = places::claimed(&folder)?;
     let bench = Arc::new(Bench::new(folder));
     begin(&bench, first)?;
     anstream::println!("Workbench:  {}\nStop it with Ctrl-C.", guard.url());
@@ -67,6 +68,8 @@ fn router(guard: Guard, bench: Arc<Bench>) -> Router {
         .route("/api/chosen", post(samples::chosen))
         .route("/api/download", get(verb::export::download))
         .route("/api/upload", post(uploads::receive).layer(DefaultBodyLimit::disable()))
+        .route("/api/uploads", post(uploads::open))
+        .route("/api/campaign", action(verb::campaign::run))
         .route("/api/load", action(verb::load::run))
         .route("/api/demo", action(verb::demo::run))
         .route("/api/split", action(verb::split::run))

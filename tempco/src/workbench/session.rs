@@ -1,12 +1,16 @@
 //! What there is between one action and the next: the campaign, the models made of it, and the answers about them.
 
 use super::job::{Job, Step};
+use super::shelf::Shelved;
+use super::{commands, places};
 use crate::command::inspect::RunSummary;
 use crate::command::train::Simpler;
 use crate::command::verify::Parity;
 use crate::data::{Data, HeldOut};
 use crate::failure::Failure;
+use crate::output::write_whole;
 use serde::Serialize;
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 use trainer::campaign::{Campaign, Split};
@@ -23,18 +27,24 @@ pub struct Session {
     pub folder: PathBuf,
     /// Counts changes, so that a page knows when to look again.
     pub version: u64,
+    /// Number of the campaign that is looked at.
+    pub campaign: usize,
     pub measured: Option<Measured>,
-    /// In the order in which they were made.
+    /// Of this campaign, in the order in which they were made.
     pub models: Vec<Entry>,
     /// Number of the model that is looked at.
     pub current: Option<usize>,
+    /// The other campaigns with their models.
+    pub shelf: Vec<Shelved>,
+    /// Folders that take files until they are read.
+    pub uploads: Vec<PathBuf>,
     /// Why the last action came to nothing.
     pub refused: Option<Refused>,
     /// What the user stopped last.
     pub stopped: Option<Step>,
     job: Option<Arc<Job>>,
     running: bool,
-    training: Option<Arc<Job>>,
+    pub training: Option<Arc<Job>>,
     jobs: u64,
 }
 
@@ -50,6 +60,8 @@ pub struct Refused {
 #[derive(Clone)]
 pub struct Measured {
     pub data: Data,
+    /// Files beside the data that say how to read it.
+    pub mappings: Vec<PathBuf>,
     pub campaign: Arc<Campaign>,
     pub runs: Arc<Vec<RunSummary>>,
     pub held_out: HeldOut,
@@ -71,6 +83,7 @@ pub struct Blind {
 
 /// A model and what was found out about it.
 pub struct Entry {
+    /// The one in its file's name, which is no other model's.
     pub number: usize,
     pub file: PathBuf,
     /// The model that it came from.
@@ -92,11 +105,10 @@ pub struct Entry {
 }
 
 /// A calibration on disk.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Exported {
-    pub hex: PathBuf,
-    pub bin: PathBuf,
-    pub bytes: usize,
+    /// Files and what was written into them: Intel HEX, the bare blob.
+    pub files: [(PathBuf, Vec<u8>); 2],
     /// Where a device looks for it.
     pub address: String,
 }
@@ -108,15 +120,18 @@ pub struct Planned {
     pub plan: Plan,
     /// The same for people.
     pub text: String,
+    /// The command that planned it.
+    pub command: String,
     /// The best recording's scenario, if any is worth making.
+    #[serde(skip)]
     pub file: Option<PathBuf>,
 }
 
-/// A model that is new, and where it comes from.
+/// Where a new model comes from.
 pub struct Origin {
-    pub file: PathBuf,
     pub parent: Option<usize>,
     pub title: String,
+    /// Without the model's place, which it gets last of all.
     pub command: String,
 }
 
@@ -134,14 +149,14 @@ impl Entry {
         comparison: Comparison,
         campaign: &Campaign,
     ) -> Result<Self, Failure> {
-        let Origin { file, parent, title, command } = origin;
+        let Origin { parent, title, command } = origin;
         let arranged = arranged(&model, campaign).map_err(Failure::from)?;
         let residuals = residuals(&model, &arranged.runs)?;
         let columns = Columns::of(&residuals);
         let residuals_ug = residuals.runs.iter().flat_map(|run| &run.residuals_g).map(|g| (g * 1e6) as f32).collect();
         Ok(Self {
             number: 0,
-            file,
+            file: PathBuf::new(),
             parent,
             title,
             command,
@@ -164,9 +179,12 @@ impl Session {
         Self {
             folder,
             version: 0,
+            campaign: 0,
             measured: None,
             models: Vec::new(),
             current: None,
+            shelf: Vec::new(),
+            uploads: Vec::new(),
             refused: None,
             stopped: None,
             job: None,
@@ -210,35 +228,34 @@ impl Session {
         jobs
     }
 
-    /// Another campaign takes the place of everything.
-    pub fn take(&mut self, measured: Measured) {
-        (self.measured, self.current, self.training) = (Some(measured), None, None);
-        self.models.clear();
-    }
-
-    /// A new model, which is looked at from now on.
-    pub fn add(&mut self, entry: Entry) {
-        let number = self.models.last().map_or(1, |last| last.number + 1);
-        // Every model sees the same samples: once is enough.
+    /// Writes a new model under a number that nothing has yet, and looks at it from now on.
+    pub fn add(&mut self, entry: Entry) -> Result<(), Failure> {
+        let number = self.next_number();
+        let file = places::model(&self.folder, number);
+        write_whole(&file, entry.model.to_text().as_bytes())?;
+        let command = commands::into(&entry.command, &file);
+        // Every model of a campaign sees the same samples: once is enough.
         let columns =
             self.models.first().map_or_else(|| Arc::clone(&entry.columns), |first| Arc::clone(&first.columns));
-        self.models.push(Entry { number, columns, ..entry });
+        self.models.push(Entry { number, file, command, columns, ..entry });
         self.current = Some(number);
+        Ok(())
     }
 
     pub fn entry(&mut self, number: usize) -> Option<&mut Entry> {
         self.models.iter_mut().find(|entry| entry.number == number)
     }
 
-    /// A file for the next model that no earlier one has, of today or of another day.
-    pub fn new_file(&self) -> PathBuf {
-        let taken = |file: &PathBuf| file.exists() || self.models.iter().any(|entry| entry.file == *file);
-        let name = |number: usize| self.folder.join(format!("model-{number}.toml"));
-        (1..).map(name).find(|file| !taken(file)).unwrap_or_else(|| self.folder.join("model.toml"))
+    /// The number of the next model: no file of any day has it, and no model of any campaign.
+    pub fn next_number(&self) -> usize {
+        let shelved = self.shelf.iter().flat_map(|one| &one.models);
+        let numbers: HashSet<usize> = self.models.iter().chain(shelved).map(|entry| entry.number).collect();
+        let free = |number: &usize| !numbers.contains(number) && places::is_free(&self.folder, *number);
+        (1..).find(free).unwrap_or_default()
     }
 
-    /// Where a model's calibration is written.
-    pub fn calibration(&self, number: usize, ending: &str) -> PathBuf {
-        self.folder.join(format!("calibration-{number}.{ending}"))
+    /// A command of the next model, as it stands while that is being trained.
+    pub fn foretold(&self, command: &str) -> String {
+        commands::into(command, &places::model(&self.folder, self.next_number()))
     }
 }

@@ -1,5 +1,6 @@
 //! What the page can ask for: one verb, one file. Each calls the function that its command calls.
 
+pub mod campaign;
 pub mod change;
 pub mod demo;
 pub mod diagnose;

@@ -1,30 +1,60 @@
 //! The session as a page receives it.
 
 use super::commands;
-use super::session::{Entry, Measured, Session};
+use super::places;
+use super::session::{Entry, Exported, Measured, Planned, Session};
 use crate::command::inspect::RunSummary;
 use crate::render::diagnosis::{first_to_add, verdict};
 use serde_json::{Value, json};
+use std::path::Path;
 use trainer::train::EffectChoice;
 
 /// All of it but the samples.
 pub fn state(session: &Session) -> Value {
     json!({
         "version": session.version,
-        "folder": session.folder,
+        "folder": shown(&session.folder),
         "job": session.running().map(|job| json!({
             "number": job.number, "step": job.step, "what": job.what, "command": job.command, "stopping": job.is_stopped(),
         })),
         "refused": session.refused,
         "stopped": session.stopped,
         "campaign": session.measured.as_ref().map(campaign),
+        "campaigns": campaigns(session),
         "models": session.models.iter().map(|entry| model(session, entry)).collect::<Vec<_>>(),
         "current": session.current,
     })
 }
 
+/// All of them in the order in which they came, with the numbers of their models.
+fn campaigns(session: &Session) -> Value {
+    let summary = |number: usize, measured: &Measured, models: &[Entry]| {
+        json!({
+            "number": number,
+            "files": files(measured),
+            "rows": measured.campaign.row_count(),
+            "models": models.iter().map(|entry| entry.number).collect::<Vec<_>>(),
+            "current": number == session.campaign,
+        })
+    };
+    let now = session.measured.iter().map(|measured| summary(session.campaign, measured, &session.models));
+    let shelved = session.shelf.iter().map(|one| summary(one.number, &one.measured, &one.models));
+    let mut all: Vec<Value> = shelved.chain(now).collect();
+    all.sort_by_key(|one| one["number"].as_u64());
+    all.into()
+}
+
+fn files(measured: &Measured) -> Vec<String> {
+    measured.data.files.iter().map(|file| shown(file)).collect()
+}
+
+/// A path for people: not every name is Unicode.
+fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
 fn campaign(measured: &Measured) -> Value {
-    let Measured { data, campaign, runs, held_out, split, blind } = measured;
+    let Measured { data, mappings, campaign, runs, held_out, split, blind } = measured;
     let is_held_out = |index: usize| split.as_ref().is_ok_and(|split| split.held_out.contains(&index));
     let run = |(index, run): (usize, &RunSummary)| {
         let mut value = json!(run);
@@ -34,7 +64,8 @@ fn campaign(measured: &Measured) -> Value {
     json!({
         "command": commands::inspect(&data.command_line()),
         "made_by": blind.as_ref().map(|blind| &blind.command),
-        "files": data.files,
+        "files": files(measured),
+        "mappings": mappings.iter().map(|file| shown(file)).collect::<Vec<_>>(),
         "rows": campaign.row_count(),
         "channels": campaign.channels,
         "ignored_columns": campaign.ignored_columns,
@@ -45,7 +76,7 @@ fn campaign(measured: &Measured) -> Value {
         "basis": split.as_ref().ok().map(|split| split.basis.to_string()),
         "split_refused": split.as_ref().err(),
         "blind": blind.as_ref().map(|blind| json!({
-            "envelope": blind.envelope,
+            "envelope": shown(&blind.envelope),
             "noise_ug": blind.noise_ug,
             "command": data.files.first().map(|file| commands::reveal(&blind.envelope, file)),
             "revealed": blind.revealed,
@@ -58,7 +89,7 @@ fn model(session: &Session, entry: &Entry) -> Value {
     let titles: Vec<String> = EffectChoice::of(&entry.model).iter().map(|choice| choice.title().to_owned()).collect();
     json!({
         "number": entry.number,
-        "file": entry.file,
+        "file": shown(&entry.file),
         "parent": entry.parent,
         "title": entry.title,
         "effects": entry.model.effects,
@@ -72,15 +103,37 @@ fn model(session: &Session, entry: &Entry) -> Value {
         "verdict": entry.diagnosis.as_deref().map(verdict),
         "to_add": entry.diagnosis.as_deref().and_then(first_to_add),
         "parity": entry.parity,
-        "exported": entry.exported,
-        "plan": entry.planned,
+        "exported": entry.exported.as_ref().map(exported),
+        "plan": entry.planned.as_ref().map(planned),
         "commands": {
             "made_by": entry.command,
             "compare": commands::compare(&entry.file, &data),
             "diagnose": commands::diagnose(&entry.file, &data),
-            "export": commands::export(&entry.file, &session.calibration(entry.number, "hex")),
+            "export": export(session, entry),
             "verify": commands::verify(&entry.file, &data),
-            "plan": commands::plan(&entry.file, &data, &session.folder.join("next")),
+            "plan": plan(session, entry, &data),
         },
     })
+}
+
+fn exported(Exported { files: [(hex, _), (bin, bytes)], address }: &Exported) -> Value {
+    json!({ "hex": shown(hex), "bin": shown(bin), "bytes": bytes.len(), "address": address })
+}
+
+fn planned(planned: &Planned) -> Value {
+    let mut value = json!(planned);
+    value["file"] = planned.file.as_deref().map(shown).into();
+    value["rehearse"] = planned.file.as_deref().map(commands::rehearse).into();
+    value
+}
+
+fn export(session: &Session, entry: &Entry) -> String {
+    let [hex, bin] = ["hex", "bin"].map(|ending| places::calibration(&session.folder, entry.number, ending));
+    commands::export(&entry.file, &hex, &bin)
+}
+
+/// The one that made the plan, or that would.
+fn plan(session: &Session, entry: &Entry, data: &str) -> String {
+    let would = || commands::into(&commands::plan(&entry.file, data), &places::plan(&session.folder, entry.number));
+    entry.planned.as_ref().map_or_else(would, |planned| planned.command.clone())
 }

@@ -3,6 +3,7 @@
 use super::{simulate, write};
 use crate::failure::Failure;
 use crate::progress::spinner;
+use crate::shell;
 use clap::Args;
 use firmware_sim::scenario::{BlindError, BlindOptions, Scenario};
 use firmware_sim::seal::{CampaignDigest, seal};
@@ -42,11 +43,11 @@ pub struct Sealed {
 impl fmt::Display for Sealed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { rows, runs, noise_floor_ug, campaign, envelope } = self;
-        let (campaign, envelope) = (campaign.display(), envelope.display());
+        let (campaign, typed, envelope) = (campaign.display(), shell::path(envelope), envelope.display());
         writeln!(f, "{rows} rows in {runs} runs written to {campaign}; noise floor {noise_floor_ug:.2} µg")?;
         write!(
             f,
-            "What they hide is sealed in {envelope}; open it when you have made up your mind:  tempco reveal {envelope}"
+            "What they hide is sealed in {envelope}; open it when you have made up your mind:  tempco reveal {typed}"
         )
     }
 }

@@ -39,7 +39,12 @@ const heard = async (response) => {
 };
 export const act = (verb, request = {}) => heard(send(`/api/${verb}`, JSON.stringify(request)));
 export const answer = async (verb, request) => (await send(`/api/${verb}`, JSON.stringify(request))).json();
-export const upload = (file) => heard(send(`/api/upload?name=${encodeURIComponent(file.name)}`, file));
+// Files that belong together; the number of the folder that they lie in.
+export async function uploadAll(files) {
+  const { upload } = await answer("uploads", {});
+  for (const file of files) await heard(send(`/api/upload?upload=${upload}&name=${encodeURIComponent(file.name)}`, file));
+  return upload;
+}
 
 // Saves what the server sends under the name that it gives it.
 export async function save(path) {

@@ -1,7 +1,7 @@
 // The page: what there is comes from the server as one state; each step draws its part of it.
 
 import { act, listen, read } from "./api.js";
-import { make } from "./dom.js";
+import { make, visible } from "./dom.js";
 import { guide } from "./guide.js";
 import { linked } from "./linked.js";
 import { reports } from "./reports.js";
@@ -24,6 +24,8 @@ const ui = { step: load, against: undefined, runs: undefined, typed: {} };
 let state;
 let effects;
 let ticking;
+// What became of the campaign before this one.
+let moved = "";
 
 const context = {
   ui,
@@ -69,12 +71,15 @@ function go(step) {
 function refuse(refusal) {
   find("refusal").replaceChildren(
     ...(refusal
-      ? [make("p", { class: "message" }, refusal.message), refusal.help && make("p", { class: "help" }, refusal.help)].filter(
-          Boolean,
-        )
+      ? [
+          ...lines(refusal.message).map((line) => make("p", { class: "message" }, line)),
+          ...lines(refusal.help).map((line) => make("p", { class: "help" }, line)),
+        ]
       : []),
   );
 }
+
+const lines = (text) => (text ? text.split("\n") : []);
 
 function draw() {
   if (!state) return;
@@ -91,7 +96,7 @@ function draw() {
   reports.attach(state);
   drawActivity();
   find("subject").textContent = state.campaign
-    ? `${state.campaign.files.join(", ")}${model ? ` · model ${model.number}` : ""}`
+    ? visible(`${state.campaign.files.join(", ")}${model ? ` · model ${model.number}` : ""}`)
     : "";
   linked.update(state, ui, choose).catch((refusal) => refuse(refusal));
   guide.update(state, context);
@@ -151,7 +156,7 @@ function drawActivity() {
   find("stop").disabled = Boolean(job?.stopping);
   document.body.classList.toggle("busy", Boolean(job));
   clearInterval(ticking);
-  const words = job ? (job.stopping ? "Stopping" : job.what) : stopped ? "Stopped; nothing was changed." : "";
+  const words = job ? (job.stopping ? "Stopping" : job.what) : stopped ? "Stopped; nothing was changed." : moved;
   const activity = find("activity");
   if (activity.dataset.words !== words) {
     activity.dataset.words = words;
@@ -167,6 +172,14 @@ function drawActivity() {
   ticking = setInterval(tick, 500);
 }
 
+const campaign = ({ campaigns }) => campaigns.find((one) => one.current);
+
+// What was typed and chosen for one campaign says nothing about another.
+function leave(other) {
+  Object.assign(ui, { against: undefined, runs: undefined, typed: {} });
+  moved = other ? `${other.files.join(", ")} is kept, ${load.withModels(other)}: back to it under Load.` : "";
+}
+
 async function look() {
   const before = state;
   state = await read("/api/state");
@@ -174,8 +187,10 @@ async function look() {
   if (began) ui.step = SHOWN_BY[state.job.step];
   if (state.refused) refuse(state.refused);
   else if (before?.refused) refuse(undefined);
-  // The first campaign leads on to training; after that the user leads.
+  // A campaign that is read leads on to training; after that the user leads.
   if (before?.job?.step === "load" && !state.job && state.campaign && !state.refused) ui.step = train;
+  if (began) moved = "";
+  if (before && campaign(before)?.number !== campaign(state)?.number) leave(campaign(before));
   draw();
 }
 
@@ -186,7 +201,7 @@ function onLine(is) {
 
 find("stop").addEventListener("click", () => context.act("stop"));
 find("guide-open").addEventListener("click", () => guide.open(state, context));
-load.acceptDrops(document.body, context);
+load.acceptDrops(document.body, context, () => state);
 
 try {
   effects = await read("/api/effects");

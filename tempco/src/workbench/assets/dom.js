@@ -9,9 +9,15 @@ export function make(name, properties = {}, ...children) {
     else if (value === true) made.setAttribute(key, "");
     else made.setAttribute(key, value);
   }
-  made.append(...children.flat(Infinity).filter((child) => child !== undefined && child !== null && child !== false));
+  const shown = name === "pre" ? byLine : visible;
+  const parts = children.flat(Infinity).filter((child) => child !== undefined && child !== null && child !== false);
+  made.append(...parts.map((part) => (part instanceof Node ? part : shown(part))));
   return made;
 }
+
+// Foreign names are text, never HTML, and nothing in them is hidden or turned around.
+export const { visible } = globalThis.charts;
+const byLine = (text) => text.split("\n").map(visible).join("\n");
 
 // A bar of so many parts of the whole; the width is set by script because the page allows no inline style.
 export function bar(share, tone = "first") {
@@ -86,10 +92,13 @@ export function command(line, label = "The same on the command line") {
   if (!line) return undefined;
   const copy = button("Copy", {
     class: "button tiny quiet",
-    "aria-label": `Copy: ${line}`,
+    "aria-label": `Copy: ${visible(line)}`,
     onclick: async () => {
-      await navigator.clipboard?.writeText(line).catch(() => undefined);
-      copy.textContent = "Copied";
+      const copied = await navigator.clipboard?.writeText(line).then(
+        () => true,
+        () => false,
+      );
+      copy.textContent = copied ? "Copied" : "Not allowed";
       setTimeout(() => {
         copy.textContent = "Copy";
       }, 1500);

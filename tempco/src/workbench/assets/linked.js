@@ -1,7 +1,7 @@
 // The linked plots: one residual against everything that it may depend on. What is brushed in one is lit in all.
 
 import { answer, bytes } from "./api.js";
-import { count, fixed, make, ug } from "./dom.js";
+import { count, fixed, make, ug, visible } from "./dom.js";
 import { Scatter } from "./scatter.js";
 
 const AXES = [
@@ -198,7 +198,7 @@ async function tell() {
   const named = found.runs.slice(0, NAMED_RUNS).map(({ run, samples }) => `${run} (${count(samples)})`);
   const rest = found.runs.length - named.length;
   words.textContent = found.samples
-    ? `${count(found.samples)} of ${count(found.of)} samples: ${each.join("; ")}. In ${named.join(", ")}${rest > 0 ? ` and ${rest} more` : ""}.`
+    ? `${count(found.samples)} of ${count(found.of)} samples: ${each.join("; ")}. In ${visible(named.join(", "))}${rest > 0 ? ` and ${rest} more` : ""}.`
     : "No sample is chosen.";
 }
 

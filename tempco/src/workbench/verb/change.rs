@@ -48,19 +48,18 @@ type Effects<'a> = &'a dyn Fn(&Change, &EffectChoice) -> Result<Vec<EffectChoice
 
 fn change(bench: &Arc<Bench>, request: Request, verb: &str, effects: Effects) -> Result<(), Refusal> {
     let (number, effect) = request.subject()?;
-    let (model, campaign, origin) = {
+    let (model, campaign, origin, command) = {
         let session = bench.session();
         let (measured, entry) = (measured(&session)?, entry(&session, number)?);
-        let file = session.new_file();
-        let command = commands::change(verb, entry, &effect, &measured.data.command_line(), &file);
+        let command = commands::change(verb, entry, &effect, &measured.data.command_line());
+        let foretold = session.foretold(&command);
         let sign = if verb == "add" { "+" } else { "−" };
         let title = format!("{sign} {}", effect.title());
-        let origin = Origin { file, parent: Some(entry.number), title, command };
-        (Arc::clone(&entry.model), Arc::clone(&measured.campaign), origin)
+        let origin = Origin { parent: Some(entry.number), title, command };
+        (Arc::clone(&entry.model), Arc::clone(&measured.campaign), origin, foretold)
     };
     let effects = effects(&Change::of(&model, &campaign)?, &effect)?;
     let what = format!("Training {}", if verb == "add" { "with it" } else { "without it" });
-    let command = origin.command.clone();
     let work = Box::new(move |job: &Job| climbed(job, &model, &campaign, &effects, origin));
     bench.start(Task { step: Step::Add, what, command, work })
 }
@@ -77,5 +76,5 @@ fn climbed(
     let ladder = Change::of(model, campaign)?.climb(effects, train, |rung| job.rung(rung))?;
     let Ladder { rungs, model, comparison } = ladder;
     let entry = Entry::compared(origin, model, comparison, campaign)?;
-    keep(job, Entry { ladder: rungs, ..entry })
+    Ok(keep(Entry { ladder: rungs, ..entry }))
 }

@@ -4,9 +4,9 @@ use super::load::{measured, take};
 use crate::command::demo::{self, SCENARIO, SEED};
 use crate::data::{Data, Reading};
 use crate::workbench::bench::{Bench, Refusal, Task};
-use crate::workbench::commands;
 use crate::workbench::job::Step;
 use crate::workbench::session::Blind;
+use crate::workbench::{commands, places};
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -19,7 +19,12 @@ pub struct Request {
 }
 
 pub fn run(bench: &Arc<Bench>, Request { seed }: Request) -> Result<(), Refusal> {
-    let (folder, seed) = (bench.session().folder.clone(), seed.unwrap_or(SEED));
+    let seed = seed.unwrap_or(SEED);
+    let folder = {
+        let session = bench.session();
+        session.idle()?;
+        places::new_folder(&session.folder, "demo")?
+    };
     let command = commands::simulate(SCENARIO, seed, &folder.join("campaign.csv"));
     let made_by = command.clone();
     let work = Box::new(move |_: &_| {

@@ -20,6 +20,7 @@ pub fn run(bench: &Arc<Bench>, OfModel { model: number }: OfModel) -> Result<(),
             if let Some(entry) = session.entry(number) {
                 entry.diagnosis = Some(diagnosis);
             }
+            Ok(())
         });
         Ok(finish)
     });

@@ -4,30 +4,56 @@ use super::{OfModel, entry};
 use crate::command::export::write;
 use crate::failure::Failure;
 use crate::workbench::bench::{Bench, Refusal};
+use crate::workbench::places;
 use crate::workbench::session::Exported;
 use axum::extract::{Query, State};
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Writes the calibration in both formats.
 pub fn run(bench: &Arc<Bench>, OfModel { model: number }: OfModel) -> Result<(), Refusal> {
-    let (model, hex, bin) = {
+    let (model, known, paths) = {
         let session = bench.session();
-        let model = Arc::clone(&entry(&session, number)?.model);
-        (model, session.calibration(number, "hex"), session.calibration(number, "bin"))
+        let entry = entry(&session, number)?;
+        let paths = ["hex", "bin"].map(|ending| places::calibration(&session.folder, number, ending));
+        (Arc::clone(&entry.model), entry.exported.clone(), paths)
     };
+    for path in &paths {
+        check(path, known.as_ref())?;
+    }
     let bytes = model.to_bytes().map_err(Failure::from)?;
-    let address = write(&hex, &bytes)?.trim_start_matches(", ").to_owned();
-    write(&bin, &bytes)?;
-    let exported = Exported { hex, bin, bytes: bytes.len(), address };
+    let address = write(&paths[0], &bytes)?.trim_start_matches(", ").to_owned();
+    write(&paths[1], &bytes)?;
+    let [hex, bin] = paths.map(written);
+    let exported = Exported { files: [hex?, bin?], address };
     bench.change(|session| {
         if let Some(entry) = session.entry(number) {
             entry.exported = Some(exported);
         }
     });
     Ok(())
+}
+
+fn written(path: PathBuf) -> Result<(PathBuf, Vec<u8>), Failure> {
+    places::plain_file(&path)?;
+    let bytes = std::fs::read(&path).map_err(|error| Failure::io(&path, &error))?;
+    Ok((path, bytes))
+}
+
+/// Refuses to write over anything but what was exported before.
+fn check(path: &Path, known: Option<&Exported>) -> Result<(), Failure> {
+    let is_own = |path: &Path| {
+        let before = known.and_then(|known| known.files.iter().find(|(file, _)| file == path));
+        before.is_some() && written(path.to_owned()).is_ok_and(|now| Some(&now) == before)
+    };
+    if !places::is_taken(path) || is_own(path) {
+        return Ok(());
+    }
+    Err(Failure::new(format_args!("{}: this is another file, and would be lost", path.display()))
+        .help("move it elsewhere, and export again"))
 }
 
 /// `?model=1&format=hex`
@@ -58,18 +84,16 @@ pub async fn download(State(bench): State<Arc<Bench>>, Query(wanted): Query<Want
 }
 
 fn file(bench: &Bench, Wanted { model, format }: &Wanted) -> Result<(String, Vec<u8>), Refusal> {
-    let path = {
-        let session = bench.session();
-        let entry = entry(&session, *model)?;
-        let exported =
-            || entry.exported.as_ref().ok_or_else(|| super::missing("nothing is exported", "export it first"));
-        match format {
-            Format::Toml => entry.file.clone(),
-            Format::Hex => exported()?.hex.clone(),
-            Format::Bin => exported()?.bin.clone(),
-        }
+    let session = bench.session();
+    let entry = entry(&session, *model)?;
+    let nothing = || super::missing("nothing is exported", "export it first");
+    let exported = |which: usize| entry.exported.as_ref().map(|one| one.files[which].clone()).ok_or_else(nothing);
+    // What was written, not what may lie there now.
+    let (path, bytes) = match format {
+        Format::Toml => (entry.file.clone(), entry.model.to_text().into_bytes()),
+        Format::Hex => exported(0)?,
+        Format::Bin => exported(1)?,
     };
-    let bytes = std::fs::read(&path).map_err(|error| Failure::io(&path, &error))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     Ok((name, bytes))
 }

@@ -6,27 +6,71 @@ use crate::failure::Failure;
 use crate::workbench::bench::{Bench, Finish, Refusal, Task};
 use crate::workbench::job::Step;
 use crate::workbench::session::{Blind, Measured};
-use crate::workbench::{commands, uploads};
+use crate::workbench::{commands, places, uploads};
 use serde::Deserialize;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use trainer::campaign::Campaign;
 
-/// Files that were uploaded, and how to read them.
+/// Files of one upload, and how to read them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Request {
+    upload: u64,
     files: Vec<String>,
     /// As `--map` takes them.
     #[serde(default)]
     map: Vec<String>,
 }
 
-pub fn run(bench: &Arc<Bench>, Request { files, map }: Request) -> Result<(), Refusal> {
-    let folder = bench.session().folder.clone();
-    // A campaign.toml beside the tables says how to read them; it is found there, not named.
-    let tables = files.iter().filter(|name| !name.ends_with(".toml"));
-    let files = tables.map(|name| uploads::path(&folder, name)).collect::<Result<Vec<_>, _>>()?;
+pub fn run(bench: &Arc<Bench>, Request { upload, files, map }: Request) -> Result<(), Refusal> {
+    let folder = {
+        let session = bench.session();
+        session.idle()?;
+        uploads::opened(&session, upload)?
+    };
+    let files = tables(&folder, &files)?;
+    // What was read stays as it was read.
+    bench.session().uploads.retain(|open| *open != folder);
     start(bench, Data { files, reading: Reading { map, ..Reading::default() } })
+}
+
+/// The tables of an upload. What says how to read them is found beside them, not named.
+fn tables(folder: &Path, names: &[String]) -> Result<Vec<PathBuf>, Failure> {
+    let mapping = folder.join(MAPPING);
+    if places::is_taken(&mapping) {
+        places::plain_file(&mapping)?;
+    }
+    let mut tables = Vec::new();
+    for name in names {
+        let file = uploads::path(folder, name)?;
+        places::plain_file(&file)?;
+        match name.as_str() {
+            MAPPING => {}
+            other if other.ends_with(".toml") => {
+                return Err(Failure::new(format_args!("{other} is no table"))
+                    .help("what says how to read tables is named campaign.toml; drop it together with them"));
+            }
+            _ => tables.push(file),
+        }
+    }
+    if tables.is_empty() {
+        return Err(Failure::new("there is no table among these files").help("drop the CSV files together with it"));
+    }
+    Ok(tables)
+}
+
+/// The file beside tables that says how to read them.
+const MAPPING: &str = "campaign.toml";
+
+/// Those that the reader follows.
+fn mappings(data: &Data) -> Vec<PathBuf> {
+    let folder = |file: &PathBuf| if file.is_dir() { Some(file.clone()) } else { file.parent().map(Path::to_owned) };
+    let mut found: Vec<PathBuf> = data.files.iter().filter_map(folder).map(|folder| folder.join(MAPPING)).collect();
+    found.sort();
+    found.dedup();
+    found.retain(|file| file.exists());
+    found
 }
 
 /// Begins to read.
@@ -44,10 +88,14 @@ pub fn measured(data: Data, campaign: Campaign, blind: Option<Blind>) -> Measure
     let runs = campaign.runs.iter().map(|run| RunSummary::of(&campaign, run)).collect();
     let held_out = HeldOut::default();
     let split = campaign.split(&held_out.choice()).map_err(Failure::from);
-    Measured { data, campaign: Arc::new(campaign), runs: Arc::new(runs), held_out, split, blind }
+    let mappings = mappings(&data);
+    Measured { data, mappings, campaign: Arc::new(campaign), runs: Arc::new(runs), held_out, split, blind }
 }
 
 /// Puts it on the bench.
 pub fn take(measured: Measured) -> Finish {
-    Box::new(move |session| session.take(measured))
+    Box::new(move |session| {
+        session.take(measured);
+        Ok(())
+    })
 }

@@ -11,12 +11,13 @@ use std::sync::Arc;
 use trainer::train::{TrainSettings, train};
 
 pub fn run(bench: &Arc<Bench>, training: Training) -> Result<(), Refusal> {
-    let (measured, file) = {
+    let (measured, origin, command) = {
         let session = bench.session();
-        (measured(&session)?.clone(), session.new_file())
+        let measured = measured(&session)?.clone();
+        let command = commands::train(&measured, &training);
+        let foretold = session.foretold(&command);
+        (measured, Origin { parent: None, title: training.title(), command }, foretold)
     };
-    let command = commands::train(&measured, &training, &file);
-    let origin = Origin { file, parent: None, title: training.title(), command: command.clone() };
     let work = Box::new(move |job: &Job| trained(job, &measured, &training.settings(), origin));
     bench.start(Task { step: Step::Train, what: "Training".to_owned(), command, work })
 }
@@ -26,13 +27,10 @@ fn trained(job: &Job, measured: &Measured, settings: &TrainSettings, origin: Ori
     let split = split(campaign, &held_out.choice(), settings)?;
     let trained = train(campaign, &split, settings, job)?;
     let entry = Entry::new(origin, trained.model.clone(), campaign)?;
-    keep(job, Entry { simpler: Simpler::all(&trained, campaign, &split), ..entry })
+    Ok(keep(Entry { simpler: Simpler::all(&trained, campaign, &split), ..entry }))
 }
 
-/// Writes the model, unless it was trained in vain, and puts it on the bench.
-pub fn keep(job: &Job, entry: Entry) -> Result<Finish, Failure> {
-    if !job.is_stopped() {
-        entry.model.write(&entry.file)?;
-    }
-    Ok(Box::new(move |session| session.add(entry)))
+/// Writes the model and puts it on the bench, unless it was trained in vain.
+pub fn keep(entry: Entry) -> Finish {
+    Box::new(move |session| session.add(entry))
 }

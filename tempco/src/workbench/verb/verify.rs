@@ -25,6 +25,7 @@ pub fn run(bench: &Arc<Bench>, OfModel { model: number }: OfModel) -> Result<(),
             if let Some(entry) = session.entry(number) {
                 entry.parity = Some(parity);
             }
+            Ok(())
         });
         Ok(finish)
     });

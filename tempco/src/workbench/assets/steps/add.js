@@ -104,7 +104,7 @@ function choice(state, model, context) {
     (one) => one.on_device && !one.takes_expression && !model.effect_titles.includes(one.name),
   );
   const has = (channel) => !channel || state.campaign.channels.includes(channel);
-  const chosen = typed.effect ?? model.to_add ?? free[0]?.name;
+  const chosen = [typed.effect, model.to_add].find((wanted) => free.some((one) => one.name === wanted)) ?? free[0]?.name;
   const select = make(
     "select",
     {

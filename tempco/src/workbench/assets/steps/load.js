@@ -1,6 +1,6 @@
 // Load: a campaign by dropping files, or one that is simulated.
 
-import { upload } from "../api.js";
+import { uploadAll } from "../api.js";
 import { button, command, count, fixed, make, table } from "../dom.js";
 
 export const id = "load";
@@ -13,17 +13,18 @@ export function summary({ campaign }) {
 
 export function render(state, _model, context) {
   const { campaign } = state;
-  return [drop(context), ...(campaign ? content(campaign) : []), practice(state, context)];
+  return [drop(state, context), ...(campaign ? content(campaign) : []), others(state, context), practice(state, context)];
 }
 
-function drop(context) {
+function drop(state, context) {
   const input = make("input", {
     type: "file",
     id: "files",
     multiple: true,
     accept: ".csv,.toml",
     class: "visually-hidden",
-    onchange: ({ target }) => send([...target.files], context),
+    disabled: Boolean(state.job),
+    onchange: ({ target }) => send([...target.files], context, state),
   });
   const map = make("input", {
     type: "text",
@@ -56,11 +57,13 @@ function drop(context) {
       make("code", {}, "run"),
       " and ",
       make("code", {}, "kind"),
-      " name the recordings.",
+      " name the recordings. A ",
+      make("code", {}, "campaign.toml"),
+      " that is dropped together with them says how to read them, and nothing about other files.",
     ),
     make(
       "details",
-      { id: "mapping" },
+      { id: "mapping", open: Boolean(context.ui.typed.map) },
       make("summary", {}, "The columns have other names"),
       make("label", { class: "field" }, "Ours = theirs, separated by commas", map),
     ),
@@ -89,6 +92,9 @@ function content(campaign) {
       `: ${count(campaign.rows)} samples in ${campaign.runs.length} runs`,
       campaign.channels.length ? `, with ${campaign.channels.join(", ")}.` : ".",
     ),
+    campaign.mappings.length
+      ? make("p", { class: "note", id: "mappings" }, "Read as ", make("code", {}, campaign.mappings.join(", ")), " says.")
+      : undefined,
     campaign.ignored_columns.length
       ? make("p", { class: "note" }, `Left unread: ${campaign.ignored_columns.join(", ")}.`)
       : undefined,
@@ -115,6 +121,42 @@ function content(campaign) {
   ];
 }
 
+export const withModels = ({ models }) =>
+  models.length > 1
+    ? `with its models ${models.join(", ")}`
+    : models.length
+      ? `with its model ${models[0]}`
+      : "without a model so far";
+
+// Nothing is lost by loading something else.
+function others(state, context) {
+  const found = state.campaigns.filter((one) => !one.current);
+  if (!found.length) return undefined;
+  return make(
+    "div",
+    { class: "aside", id: "campaigns" },
+    make("h2", {}, "Other campaigns of this session"),
+    make(
+      "ul",
+      { class: "plain" },
+      found.map((one) =>
+        make(
+          "li",
+          { class: "effect-row" },
+          make("strong", {}, one.files.join(", ")),
+          make("span", { class: "note" }, `${count(one.rows)} samples, ${withModels(one)}`),
+          button("Back to it", {
+            class: "button tiny quiet",
+            id: `campaign-${one.number}`,
+            disabled: Boolean(state.job),
+            onclick: () => context.act("campaign", { campaign: one.number }),
+          }),
+        ),
+      ),
+    ),
+  );
+}
+
 function practice(state, context) {
   return make(
     "div",
@@ -133,7 +175,7 @@ function practice(state, context) {
   );
 }
 
-export function acceptDrops(target, context) {
+export function acceptDrops(target, context, state) {
   let depth = 0;
   const over = (by) => {
     depth += by;
@@ -145,15 +187,22 @@ export function acceptDrops(target, context) {
   target.addEventListener("drop", (event) => {
     event.preventDefault();
     over(-depth);
-    send([...event.dataTransfer.files], context);
+    const folder = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.()).find((entry) => entry?.isDirectory);
+    if (folder) context.refuse({ message: `${folder.name} is a folder.`, help: "Drop the files in it, all at once." });
+    else send([...event.dataTransfer.files], context, state());
   });
 }
 
-async function send(files, context) {
+async function send(files, context, state) {
   if (!files.length) return;
+  if (state?.job) {
+    context.refuse({ message: "Something else is at work.", help: "Wait for it, or stop it, and drop the files again." });
+    return;
+  }
   context.refuse(undefined);
+  let upload;
   try {
-    for (const file of files) await upload(file);
+    upload = await uploadAll(files);
   } catch (refusal) {
     context.refuse(refusal);
     return;
@@ -162,5 +211,5 @@ async function send(files, context) {
     .split(",")
     .map((pair) => pair.trim())
     .filter(Boolean);
-  await context.act("load", { files: files.map((file) => file.name), map });
+  await context.act("load", { upload, files: files.map((file) => file.name), map });
 }

@@ -77,6 +77,6 @@ function answer(plan) {
       : make("p", {}, "No recording here tells them apart any better."),
     table("", ["recording", number("hours"), number("days"), number("σ² per hour"), "tells apart, or shows"], rows),
     make("details", { id: "plan-text" }, make("summary", {}, "As text"), make("pre", {}, plan.text)),
-    plan.file ? command(`tempco simulate ${plan.file} -o new.csv`, "Rehearse it") : undefined,
+    plan.file ? command(plan.rehearse, "Rehearse it") : undefined,
   ];
 }
