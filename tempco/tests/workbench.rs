@@ -5,6 +5,10 @@
 mod chromium;
 #[path = "workbench/clicks.rs"]
 mod clicks;
+#[path = "workbench/foreign_names.rs"]
+mod foreign_names;
+#[path = "workbench/kept.rs"]
+mod kept;
 #[path = "workbench/keys.rs"]
 mod keys;
 #[path = "workbench/page.rs"]
@@ -13,5 +17,10 @@ mod page;
 mod requests;
 #[path = "workbench/served.rs"]
 mod served;
+#[cfg(unix)]
+#[path = "workbench/shell.rs"]
+mod shell;
 #[path = "workbench/strangers.rs"]
 mod strangers;
+#[path = "workbench/uploads.rs"]
+mod uploads;

@@ -39,8 +39,12 @@ impl Answer {
 
 impl Served {
     /// Starts it with these arguments.
-    pub fn start(arguments: &[&str]) -> Self {
-        let folder = TempDir::new().expect("a folder");
+    pub fn start<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Self {
+        Self::start_in(TempDir::new().expect("a folder"), arguments)
+    }
+
+    /// In a folder where there is something already.
+    pub fn start_in<S: AsRef<std::ffi::OsStr>>(folder: TempDir, arguments: &[S]) -> Self {
         let mut process = Command::new(env!("CARGO_BIN_EXE_tempco"))
             .arg("workbench")
             .args(arguments)
@@ -83,8 +87,20 @@ impl Served {
         self.settled()
     }
 
-    pub fn upload(&self, name: &str, content: &str) -> Answer {
-        self.ask("POST", &format!("/api/upload?name={name}"), content.as_bytes())
+    /// Opens a folder for files that belong together.
+    pub fn uploads(&self) -> u64 {
+        self.post("uploads", "{}").json()["upload"].as_u64().expect("a number")
+    }
+
+    pub fn upload(&self, upload: u64, name: &str, content: &str) -> Answer {
+        self.ask("POST", &format!("/api/upload?upload={upload}&name={name}"), content.as_bytes())
+    }
+
+    /// Drops one file and waits until it is read.
+    pub fn dropped(&self, name: &str, content: &str) -> Value {
+        let upload = self.uploads();
+        assert_eq!(self.upload(upload, name, content).status, 204, "{name}");
+        self.done("load", &serde_json::json!({ "upload": upload, "files": [name] }).to_string())
     }
 
     pub fn state(&self) -> Value {
