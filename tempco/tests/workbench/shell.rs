@@ -94,7 +94,7 @@ fn hostile_runs_serials_and_expressions_arrive_as_they_are() {
     ];
     assert_eq!(words, expected);
     // Quotes are no part of the language; what it has, a shell would take for something else.
-    let expression = "-temperature * (1 + temperature)";
+    let expression = "-temperature_rate * (1 + temperature_rate)";
     let state = served.done("add", &json!({ "model": 1, "expression": expression }).to_string());
     assert_eq!(state["refused"], json!(null));
     let words = handed(&state["models"][1]["commands"]["made_by"]);

@@ -8,21 +8,21 @@ use std::net::TcpStream;
 use std::time::Duration;
 
 fn other_names() -> String {
-    fs::read_to_string(SMALL).expect("checked in").replacen("delta_f_hz", "FreqDiff", 1)
+    fs::read_to_string(SMALL).expect("checked in").replacen("temperature_c", "Warmth", 1)
 }
 
 #[test]
 fn a_mapping_file_says_nothing_about_later_files() {
     let served = Served::small();
     let upload = served.uploads();
-    let mapping = "[columns]\ndelta_f_hz = \"FreqDiff\"\n";
+    let mapping = "[columns]\ntemperature_c = \"Warmth\"\n";
     assert_eq!(served.upload(upload, "campaign.toml", mapping).status, 204);
     assert_eq!(served.upload(upload, "first.csv", &other_names()).status, 204);
     let state = served.done("load", r#"{"upload":1,"files":["campaign.toml","first.csv"]}"#);
     assert_eq!((&state["refused"], &state["campaign"]["rows"]), (&json!(null), &json!(2736)));
     assert_eq!(state["campaign"]["mappings"], json!(["tempco-workbench/upload-1/campaign.toml"]));
     let state = served.dropped("second.csv", &other_names());
-    assert!(state["refused"]["message"].as_str().expect("refused").contains("delta_f_hz"), "{}", state["refused"]);
+    assert!(state["refused"]["message"].as_str().expect("refused").contains("temperature_c"), "{}", state["refused"]);
     let state = served.dropped("third.csv", &fs::read_to_string(SMALL).expect("checked in"));
     assert_eq!((&state["refused"], &state["campaign"]["mappings"]), (&json!(null), &json!([])));
     // What was read is closed: its mapping can't change afterwards.

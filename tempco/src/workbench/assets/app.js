@@ -177,7 +177,7 @@ const campaign = ({ campaigns }) => campaigns.find((one) => one.current);
 // What was typed and chosen for one campaign says nothing about another.
 function leave(other) {
   Object.assign(ui, { against: undefined, runs: undefined, typed: {} });
-  moved = other ? `${other.files.join(", ")} is kept, ${load.withModels(other)}: back to it under Load.` : "";
+  moved = other ? `${other.files.map((file) => file.split("/").at(-1)).join(", ")} is kept, ${load.withModels(other)}: back to it under Load.` : "";
 }
 
 async function look() {
@@ -187,10 +187,12 @@ async function look() {
   if (began) ui.step = SHOWN_BY[state.job.step];
   if (state.refused) refuse(state.refused);
   else if (before?.refused) refuse(undefined);
-  // A campaign that is read leads on to training; after that the user leads.
-  if (before?.job?.step === "load" && !state.job && state.campaign && !state.refused) ui.step = train;
   if (began) moved = "";
-  if (before && campaign(before)?.number !== campaign(state)?.number) leave(campaign(before));
+  if (before && campaign(before)?.number !== campaign(state)?.number) {
+    leave(campaign(before));
+    // A campaign that is new leads on to training; after that the user leads.
+    if (!state.models.length) ui.step = train;
+  }
   draw();
 }
 
