@@ -1,7 +1,7 @@
 //! Claim: `docs/wire.md` says what the code does: its numbers, limits and example bytes are the code's.
 
 use firmware_core::program::{Input, Step};
-use protocol::limits;
+use protocol::limits::{self, MAX_CHANNELS};
 use protocol::{
     Decoder, Envelope, FrameError, Identity, InstrumentState, Reading, Refusal, Request, Response, Sample, Source,
     Status, StorageState, Streamed, encode_frame, unlock_answer,
@@ -39,7 +39,7 @@ fn number(message: &impl Serialize) -> u32 {
 
 fn sample() -> Sample {
     let pair = Sample::from_pair(1_500_000, 41_238_000_123, 41_162_000_000, 24_998_437);
-    Sample { age_s: Some(365 * 86_400), ..pair }
+    Sample { age_s: Some(365 * 86_400), channels: [0; MAX_CHANNELS], ..pair }
 }
 
 fn reading() -> Reading {

@@ -94,6 +94,53 @@ impl core::error::Error for LoadError {}
 ///
 /// In `f32` this is the one evaluator of a deployed model, on the device and on the host. In `f64`
 /// the trainer differentiates the same formulas.
+///
+/// A program of one's own reads the bytes that `tempco export` wrote, and gives it what was measured. A channel that
+/// nobody wrote into the sample counts as not measured: the effect that needs it is left out, and the reading says so.
+///
+/// ```
+/// use firmware_core::Compensator;
+/// use protocol::{Blob, Sample, Status};
+///
+/// # use firmware_core::Network;
+/// # use protocol::{Domain, Scaling, Term, Timing, Weights};
+/// # let weights = Weights::from_array(&[0.0; 41]);
+/// # let parameters = [20e-6, 20.0, 40.0].into_iter().collect();
+/// # let humidity = 15;
+/// # let exported = Blob {
+/// #     serial: heapless::String::new(),
+/// #     provenance: [0; 8],
+/// #     proof: Network::<f32>::new(&weights).proof().unwrap(),
+/// #     scaling: Scaling {
+/// #         delta_f_zero_uhz: 76_000_000,
+/// #         delta_f_gain_per_hz: 0.01,
+/// #         temperature_zero_uc: 25_000_000,
+/// #         temperature_gain_per_c: 0.02,
+/// #         line_g: [0.0, 0.25, 0.0, 0.0],
+/// #         output_g: 0.0,
+/// #     },
+/// #     weights,
+/// #     domain: Domain { delta_f_uhz: (0, 152_000_000), temperature_uc: (-40_000_000, 85_000_000) },
+/// #     timing: Timing { max_gap_us: u32::MAX },
+/// #     channels: [heapless::String::try_from("humidity_pct").unwrap()].into_iter().collect(),
+/// #     terms: [Term { effect: humidity, channel: 0, parameters, program: heapless::Vec::new() }].into_iter().collect(),
+/// # };
+/// # let mut buffer = [0; protocol::limits::MAX_BLOB];
+/// # let bytes = exported.to_bytes(&mut buffer).unwrap();
+/// let blob = Blob::from_bytes(bytes)?; // made with a humidity effect of 20 µg for each per cent away from 40 %
+/// let mut compensator = Compensator::load(&blob)?;
+///
+/// let (f1_uhz, f2_uhz, temperature_uc) = (41_238_000_000, 41_162_000_000, 25_000_000);
+/// let mut sample = Sample::from_pair(1_000_000, f1_uhz, f2_uhz, temperature_uc);
+/// let reading = compensator.compensate(&sample);
+/// assert!(reading.acceleration_g == 0.0 && reading.status.contains(Status::CHANNEL_MISSING));
+///
+/// sample.time_us += 1_000_000;
+/// sample.channels[0] = 50_000_000; // 50 %, in the order of `blob.channels`
+/// let reading = compensator.compensate(&sample);
+/// assert!((reading.acceleration_g + 200e-6).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone)]
 pub struct Compensator<R: Real = f32> {
     scaling: Scaling,

@@ -4,7 +4,6 @@ use crate::counter::{Counter, CounterError};
 use crate::thermometer::{Thermometer, ThermometerError};
 use embedded_hal::i2c::I2c;
 use embedded_hal::spi::SpiDevice;
-use protocol::limits::MAX_CHANNELS;
 use protocol::{Sample, Status};
 
 /// The two sensors of the instrument.
@@ -33,9 +32,8 @@ impl<SPI: SpiDevice, I2C: I2c> Sensors<SPI, I2C> {
             Some(pair) => Sample::from_pair(time_us, pair.f1_uhz, pair.f2_uhz, temperature_uc),
             None => Sample::from_difference(time_us, 0, temperature_uc),
         };
+        // Nothing here measures a channel yet; a calibration that needs one flags it.
         sample.faults = frequency_fault | temperature_fault;
-        // Nothing here measures them yet; a calibration that needs one flags it.
-        sample.channels = [Sample::NOT_MEASURED; MAX_CHANNELS];
         sample
     }
 }

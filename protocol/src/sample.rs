@@ -34,7 +34,8 @@ impl Sample {
     /// The value of a channel that nobody measured: no channel can have it, and zero would be a value.
     pub const NOT_MEASURED: i64 = i64::MIN;
 
-    /// A sample of the two resonators' frequencies, everything else at zero.
+    /// A sample of the two resonators' frequencies. Power was applied when the clock stood at zero, the age is unknown,
+    /// and no auxiliary channel was measured: whoever measures one writes it into [`Sample::channels`].
     #[must_use]
     pub const fn from_pair(time_us: u64, f1_uhz: u64, f2_uhz: u64, temperature_uc: i32) -> Self {
         let delta_f_uhz = f1_uhz.wrapping_sub(f2_uhz).cast_signed();
@@ -44,7 +45,7 @@ impl Sample {
         }
     }
 
-    /// A sample of the frequency difference alone, everything else at zero.
+    /// A sample of the frequency difference alone, everything else as [`Sample::from_pair`] leaves it.
     #[must_use]
     pub const fn from_difference(time_us: u64, delta_f_uhz: i64, temperature_uc: i32) -> Self {
         Self {
@@ -54,7 +55,7 @@ impl Sample {
             delta_f_uhz,
             sum_f_uhz: None,
             temperature_uc,
-            channels: [0; MAX_CHANNELS],
+            channels: [Self::NOT_MEASURED; MAX_CHANNELS],
             faults: Status::empty(),
         }
     }
@@ -63,6 +64,14 @@ impl Sample {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_is_measured_until_somebody_says_so() {
+        let pair = Sample::from_pair(7, 3, 2, 1);
+        assert_eq!((pair.channels, pair.age_s), ([Sample::NOT_MEASURED; MAX_CHANNELS], None));
+        let difference = Sample::from_difference(7, 1, 1);
+        assert_eq!((difference.channels, difference.sum_f_uhz), ([Sample::NOT_MEASURED; MAX_CHANNELS], None));
+    }
 
     #[test]
     fn a_pair_is_kept_without_loss() {

@@ -16,7 +16,6 @@ use trainer::diagnose::plan::Recording;
 
 use crate::failure::Failure;
 use protocol::Sample;
-use protocol::limits::MAX_CHANNELS;
 
 /// What can be recorded; `{cold}` to `{hot}` stand for the campaign's temperatures.
 const TEXTS: [&str; 13] = [
@@ -158,7 +157,6 @@ fn as_row(row: &Recorded, channels: &[Column], aged: bool) -> Row {
     );
     sample.power_on_us = micro(row.power_on_s) as u64;
     sample.age_s = aged.then_some((row.age_days * DAY_S).round() as u32);
-    sample.channels = [0; MAX_CHANNELS];
     for (slot, column) in sample.channels.iter_mut().zip(channels) {
         *slot = micro(value(row, *column)) as i64;
     }

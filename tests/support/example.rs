@@ -3,7 +3,7 @@
 //! All numbers come from integers, so the example has the same bits on every machine.
 
 use firmware_core::Network;
-use protocol::limits::MAX_BLOB;
+use protocol::limits::{MAX_BLOB, MAX_CHANNELS};
 use protocol::{Blob, Domain, Sample, Scaling, Status, Term, Timing, Weights};
 
 /// Serial number of the sensor that the example belongs to.
@@ -108,6 +108,7 @@ fn ordinary(second: u64) -> Sample {
     let mut sample = Sample::from_difference(second * 1_000_000, delta_f_uhz, temperature_uc);
     sample.sum_f_uhz = (!second.is_multiple_of(3)).then_some(82_400_000_000);
     sample.age_s = second.is_multiple_of(2).then_some(31_000_000 + second as u32);
+    sample.channels = [0; MAX_CHANNELS];
     sample.channels[0] = 5_000_000 + (scatter % 100_000) as i64;
     sample
 }

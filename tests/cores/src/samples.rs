@@ -36,9 +36,14 @@ pub struct Samples {
     present: Sample,
 }
 
+/// Where the walk begins, with all channels measured.
+fn first() -> Sample {
+    Sample { channels: [0; MAX_CHANNELS], ..Sample::from_difference(0, 76_000_000, 25_000_000) }
+}
+
 impl Default for Samples {
     fn default() -> Self {
-        Self { scatter: Scatter::default(), count: 0, present: Sample::from_difference(0, 76_000_000, 25_000_000) }
+        Self { scatter: Scatter::default(), count: 0, present: first() }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The hash that says which data a model came from.
 
 use super::{Quantity, Row, Run};
+use protocol::Sample;
 use sha2::{Digest, Sha256};
 
 /// The form of the hashed bytes. Another form needs another name: old models keep theirs.
@@ -48,7 +49,7 @@ fn put_row(bytes: &mut Vec<u8>, row: &Row, channels: &[usize]) {
     put_optional(bytes, sample.sum_f_uhz.map(u64::to_le_bytes));
     bytes.extend(sample.temperature_uc.to_le_bytes());
     for &position in channels {
-        bytes.extend(sample.channels.get(position).copied().unwrap_or_default().to_le_bytes());
+        bytes.extend(sample.channels.get(position).copied().unwrap_or(Sample::NOT_MEASURED).to_le_bytes());
     }
     bytes.extend(row.reference_g.to_bits().to_le_bytes());
     put_optional(bytes, row.reference_sigma_g.map(|sigma_g| sigma_g.to_bits().to_le_bytes()));
