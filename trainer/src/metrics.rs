@@ -3,6 +3,8 @@
 pub mod allan;
 pub mod allan_model;
 pub mod full_temperature;
+pub mod input_axis;
+pub mod levels;
 pub mod stability;
 pub mod states;
 pub mod zero_bias;

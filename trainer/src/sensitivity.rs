@@ -7,6 +7,7 @@ use crate::campaign::Campaign;
 use crate::fit::dataset::InputScale;
 use crate::fit::neighbours::merged;
 use crate::fit::polynomial::Polynomial;
+use crate::metrics::levels::level_width;
 use crate::model::{Model, SlopeOf};
 use serde::Serialize;
 
@@ -34,9 +35,6 @@ pub fn sensitivity(model: &Model, campaign: &Campaign) -> Option<Sensitivity> {
     Some(over_grid(model, |delta_f_uhz, temperature_uc| error.ppm_at(delta_f_uhz, temperature_uc)))
 }
 
-/// References closer than this are one level, g.
-const LEVEL_TOLERANCE_G: f64 = 0.01;
-
 /// How far a model's slope is from the one that a campaign measures.
 pub struct SlopeError<'a> {
     slope: SlopeOf<'a>,
@@ -48,7 +46,8 @@ impl<'a> SlopeError<'a> {
     /// `None` where the campaign measures no scale factor because its reference never varies.
     #[must_use]
     pub fn new(model: &'a Model, campaign: &Campaign) -> Option<Self> {
-        if campaign.levels(LEVEL_TOLERANCE_G).len() < 2 {
+        let references: Vec<f64> = campaign.rows().map(|row| row.reference_g).collect();
+        if campaign.levels(level_width(&references)).len() < 2 {
             return None;
         }
         let scale = InputScale::of(&campaign.runs)?;

@@ -1,13 +1,14 @@
 //! What a reader should know before believing the figures.
 
 use crate::campaign::{Campaign, Row};
+use crate::metrics::levels::{level_width, span};
 use crate::residuals::{Residuals, RunResiduals};
 use crate::sensitivity::Sensitivity;
 
 /// With fewer levels than this, what lies between them was never measured.
 const LEVELS_MIN: usize = 5;
-/// References closer than this are one level, g.
-const SAME_LEVEL_G: f64 = 0.05;
+/// References closer than this part of what all of them span are one level.
+const SAME_LEVEL: f64 = 0.025;
 /// Temperatures further apart than this leave a gap in which a narrow effect can hide, °C.
 const GAP_C: f64 = 12.0;
 /// A slope further off than this betrays a network that learnt levels by heart, ppm.
@@ -23,7 +24,9 @@ pub fn warnings(campaign: &Campaign, residuals: &Residuals, sensitivity: Option<
 }
 
 fn few_levels(campaign: &Campaign) -> Option<String> {
-    let levels = campaign.levels(SAME_LEVEL_G).len();
+    let references: Vec<f64> = campaign.rows().map(|row| row.reference_g).collect();
+    let width_g = level_width(&references).max(SAME_LEVEL * span(&references));
+    let levels = campaign.levels(width_g).len();
     (levels < LEVELS_MIN).then(|| {
         format!(
             "the campaign has only {levels} levels of acceleration: nothing here measures the model between them; \

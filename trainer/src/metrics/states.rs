@@ -1,5 +1,6 @@
 //! Stretches of a run in which neither level nor temperature changes.
 
+use super::levels::level_width;
 use crate::campaign::{Row, Run};
 use std::ops::Range;
 
@@ -14,27 +15,29 @@ pub struct State {
     pub temperature_c: f64,
 }
 
-/// References further apart than this are different levels, g.
-const SAME_LEVEL_G: f64 = 0.01;
 /// A state whose temperature wanders further than this is no state, °C.
 const SAME_TEMPERATURE_C: f64 = 1.0;
 
 /// The states of a run in order. A ramp has none.
 #[must_use]
 pub fn states(run: &Run) -> Vec<State> {
-    let same_level = |a: &Row, b: &Row| (a.reference_g - b.reference_g).abs() < SAME_LEVEL_G && adjoin(a, b);
+    let references: Vec<f64> = run.rows.iter().map(|row| row.reference_g).collect();
+    let width = level_width(&references);
     let mut start = 0;
     let mut found = Vec::new();
-    for rows in run.rows.chunk_by(same_level) {
-        found.extend(state(rows, start));
-        start += rows.len();
+    while let Some(first) = run.rows.get(start) {
+        let same =
+            |pair: &&[Row]| (pair[1].reference_g - first.reference_g).abs() <= width && adjoin(&pair[0], &pair[1]);
+        let end = start + 1 + run.rows[start..].windows(2).take_while(same).count();
+        found.extend(state(&run.rows[start..end], start));
+        start = end;
     }
     found
 }
 
 /// A node change between two states at the same level shows as a step in temperature.
 fn adjoin(a: &Row, b: &Row) -> bool {
-    (a.sample.temperature_uc - b.sample.temperature_uc).abs() < (SAME_TEMPERATURE_C * 1e6) as i32
+    a.sample.temperature_uc.abs_diff(b.sample.temperature_uc) < (SAME_TEMPERATURE_C * 1e6) as u32
 }
 
 fn state(rows: &[Row], start: usize) -> Option<State> {

@@ -2,6 +2,7 @@
 
 use crate::campaign::{Campaign, Run};
 use crate::compare::{mean_slope_g_per_hz, unseen};
+use crate::metrics::levels::{level_width, span};
 use crate::metrics::mean;
 use crate::model::Model;
 use crate::noise::rms;
@@ -12,9 +13,6 @@ pub struct RawLine {
     slope_g_per_hz: f64,
     constant_g: f64,
 }
-
-/// A least-squares slope needs references that differ by more than this, g².
-const LEAST_VARIANCE: f64 = 1e-6;
 
 impl RawLine {
     /// Least squares on the training runs, or on all where the training saw none of them. Where the reference never
@@ -31,7 +29,8 @@ impl RawLine {
             let means = [hz_mean, g_mean];
             points.iter().map(|point| (point[a] - means[a]) * (point[b] - means[b])).sum::<f64>()
         };
-        let varies = sum(1, 1) > LEAST_VARIANCE * points.len() as f64;
+        let references: Vec<f64> = points.iter().map(|point| point[1]).collect();
+        let varies = span(&references) > level_width(&references);
         let slope_g_per_hz = if varies { sum(0, 1) / sum(0, 0) } else { mean_slope_g_per_hz(model) };
         Self { slope_g_per_hz, constant_g: g_mean - slope_g_per_hz * hz_mean }
     }

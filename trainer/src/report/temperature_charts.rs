@@ -3,6 +3,7 @@
 use super::chart::{Axis, Chart, Layer, Tone};
 use crate::compare::{Comparison, RunFigures, mean_slope_g_per_hz};
 use crate::metrics::full_temperature::{FullTemperature, Node};
+use crate::metrics::levels::level_width;
 use crate::metrics::mean;
 use crate::metrics::states::{State, states};
 use crate::model::Model;
@@ -10,12 +11,8 @@ use crate::residuals::{Residuals, RunResiduals};
 
 /// Runs in one chart.
 const MOST_RUNS: usize = 6;
-/// The levels of the paper, g, with their names.
-const LEVELS: [(f64, &str); 3] = [(-1.0, "−1 g"), (0.0, "0 g"), (1.0, "+1 g")];
 /// States closer than this belong to one node, °C.
 const SAME_NODE_C: f64 = 3.0;
-/// How far a level may be from one of them, g.
-const LEVEL_TOLERANCE_G: f64 = 0.05;
 
 /// A line through points.
 struct Series {
@@ -92,7 +89,7 @@ fn deviation(nodes: &[Node], per_g: f64) -> Vec<[f64; 2]> {
     nodes.iter().map(|node| [node.temperature_c, (node.bias_g - middle) * per_g]).collect()
 }
 
-/// The output at −1, 0 and +1 g over temperature, raw and compensated, of the run with the most nodes that counts.
+/// The output at the lowest, the middle and the highest level over temperature, raw and compensated, of the run with the most nodes that counts.
 #[must_use]
 pub fn level_charts(model: &Model, comparison: &Comparison, residuals: &Residuals) -> Vec<Chart> {
     let nodes = |run: &RunFigures| run.raw.full_temperature.as_ref().map(|figures| figures.nodes.len());
@@ -124,11 +121,31 @@ pub fn level_charts(model: &Model, comparison: &Comparison, residuals: &Residual
 
 fn levels<'a>(run: &'a RunResiduals, value: impl Fn(&State) -> f64 + 'a) -> impl Iterator<Item = Series> + 'a {
     let all = states(run.run);
-    LEVELS.into_iter().enumerate().map(move |(k, (level_g, name))| {
-        let near = |state: &&State| (state.reference_g - level_g).abs() < LEVEL_TOLERANCE_G;
+    let width_g = level_width(&run.run.rows.iter().map(|row| row.reference_g).collect::<Vec<_>>());
+    shown_levels_g(&all, width_g).into_iter().enumerate().map(move |(k, level_g)| {
+        let near = |state: &&State| (state.reference_g - level_g).abs() <= width_g;
         let points = all.iter().filter(near).map(|state| [state.temperature_c, value(state)]).collect();
-        series(name, Tone::series(k), points)
+        series(&level_name(level_g, width_g), Tone::series(k), points)
     })
+}
+
+/// Lowest, middle and highest of the levels, as many as there are: −1, 0 and +1 g of the paper.
+fn shown_levels_g(states: &[State], width_g: f64) -> Vec<f64> {
+    let levels = || states.iter().map(|state| state.reference_g);
+    let (low, high) = (levels().fold(f64::MAX, f64::min), levels().fold(f64::MIN, f64::max));
+    let from_middle = |level: &f64| (level - f64::midpoint(low, high)).abs();
+    let middle = levels().min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)));
+    let mut shown: Vec<f64> = std::iter::once(low).chain(middle).chain([high]).collect();
+    shown.dedup_by(|b, a| *b - *a <= width_g);
+    shown
+}
+
+fn level_name(level_g: f64, width_g: f64) -> String {
+    if level_g.abs() <= width_g {
+        return "0 g".to_owned();
+    }
+    let text = format!("{level_g:+.3}");
+    format!("{} g", text.trim_end_matches('0').trim_end_matches('.').replace('-', "−"))
 }
 
 fn state_mean(state: &State, run: &RunResiduals, value: impl Fn(usize) -> f64) -> f64 {
@@ -167,4 +184,26 @@ fn chart(id: &str, title: &str, caption: &str, (label, unit): (&str, &str), all:
 fn node_means(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let centre = |node: &[[f64; 2]]| [0, 1].map(|axis| mean(&node.iter().map(|p| p[axis]).collect::<Vec<_>>()));
     points.chunk_by(|a, b| b[0] - a[0] < SAME_NODE_C).map(centre).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_levels_of_a_chart_are_those_of_the_run() {
+        let states = |levels: &[f64]| -> Vec<State> {
+            levels.iter().map(|&reference_g| State { rows: 0..1, reference_g, temperature_c: 0.0 }).collect()
+        };
+        let tumble: Vec<f64> = (0..24).map(|k| (f64::from(k) * 15.0).to_radians().cos()).collect();
+        let names = |levels: &[f64]| -> Vec<String> {
+            shown_levels_g(&states(levels), 0.01).into_iter().map(|level| level_name(level, 0.01)).collect()
+        };
+        assert_eq!(names(&tumble), ["−1 g", "0 g", "+1 g"]);
+        assert_eq!(names(&[0.0, 1.0, 1e-4, -1.0]), ["−1 g", "0 g", "+1 g"]);
+        assert_eq!(
+            (names(&[-0.866, 0.866]), names(&[0.5])),
+            (vec!["−0.866 g".into(), "+0.866 g".into()], vec!["+0.5 g".into()])
+        );
+    }
 }

@@ -4,17 +4,17 @@ use super::chart::{Axis, Chart, Layer, Tone};
 use super::raw_line::RawLine;
 use super::samples::RunName;
 use super::thin::thin;
+use crate::metrics::levels::level_width;
 use crate::metrics::mean;
 use crate::residuals::{Residuals, RunResiduals};
-
-/// References closer than this are one level, g.
-const SAME_LEVEL_G: f64 = 0.01;
 
 /// The longest zero-bias run that was held out, or of all where none was; else another recording at one level.
 #[must_use]
 pub fn zero_chart(runs: &[RunName], residuals: &Residuals, line: &RawLine) -> Option<Chart> {
+    let rows = residuals.runs.iter().flat_map(|run| &run.run.rows);
+    let width_g = level_width(&rows.map(|row| row.reference_g).collect::<Vec<_>>());
     let any_held_out = runs.iter().any(|run| run.held_out);
-    let counts = |(name, run): &(&RunName, &RunResiduals)| (name.held_out || !any_held_out) && at_rest(run);
+    let counts = |(name, run): &(&RunName, &RunResiduals)| (name.held_out || !any_held_out) && at_rest(run, width_g);
     let candidates = runs.iter().zip(&residuals.runs).filter(counts);
     let (_, run) = candidates.max_by_key(|(name, run)| (name.kind == "zero", run.residuals_g.len()))?;
     let raw_ug = about_mean_ug(&line.residuals_g(run.run));
@@ -45,10 +45,10 @@ pub fn zero_chart(runs: &[RunName], residuals: &Residuals, line: &RawLine) -> Op
 }
 
 /// At one level from beginning to end.
-fn at_rest(run: &RunResiduals) -> bool {
+fn at_rest(run: &RunResiduals, width_g: f64) -> bool {
     let mut levels = run.run.rows.iter().map(|row| row.reference_g);
     let Some(first) = levels.next() else { return false };
-    (run.run.kind == "zero" || run.run.kind == "static") && levels.all(|level| (level - first).abs() < SAME_LEVEL_G)
+    (run.run.kind == "zero" || run.run.kind == "static") && levels.all(|level| (level - first).abs() <= width_g)
 }
 
 fn about_mean_ug(values_g: &[f64]) -> Vec<f64> {
