@@ -12,6 +12,7 @@ mod check;
 mod columns;
 mod error;
 mod help;
+mod limits;
 mod nearest;
 mod number;
 mod options;
@@ -20,11 +21,14 @@ mod read;
 mod rows;
 mod split;
 mod table;
+mod text;
 
 #[cfg(test)]
 mod bad_campaign;
 #[cfg(test)]
 mod bad_input;
+#[cfg(test)]
+mod hostile;
 #[cfg(test)]
 mod tests;
 
@@ -205,6 +209,19 @@ impl Run {
         }
     }
 
+    /// Whether the clock is a calendar's (Unix time, for example), which does not say when power was applied: unless
+    /// the file has a column `power_on_s`, time since power-on is counted from the first row.
+    #[must_use]
+    pub fn has_calendar_time(&self) -> bool {
+        self.rows.first().is_some_and(|first| first.sample.time_us > limits::MAX_UPTIME_US)
+    }
+
+    /// Whether the first row is taken to be the moment at which power was applied.
+    #[must_use]
+    pub fn begins_with_power_on(&self) -> bool {
+        self.rows.first().is_some_and(|first| first.sample.power_on_us == 0)
+    }
+
     /// Times between rows, µs.
     fn steps_us(&self) -> impl Iterator<Item = u64> {
         self.rows.windows(2).map(|pair| pair[1].sample.time_us.saturating_sub(pair[0].sample.time_us))
@@ -230,12 +247,12 @@ impl Run {
         self.rows.get(start..end).unwrap_or_default()
     }
 
-    /// Entry `i` of every row's channels becomes what was entry `order[i]`; the rest becomes zero.
+    /// Entry `i` of every row's channels becomes what was entry `order[i]`; the rest was not measured.
     fn reorder_channels(&mut self, order: &[usize]) {
         for row in &mut self.rows {
-            let mut channels = [0; MAX_CHANNELS];
+            let mut channels = [Sample::NOT_MEASURED; MAX_CHANNELS];
             for (to, &from) in channels.iter_mut().zip(order) {
-                *to = row.sample.channels.get(from).copied().unwrap_or_default();
+                *to = row.sample.channels.get(from).copied().unwrap_or(Sample::NOT_MEASURED);
             }
             row.sample.channels = channels;
         }

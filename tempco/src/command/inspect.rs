@@ -11,6 +11,7 @@ use protocol::{Blob, Signed};
 use serde::Serialize;
 use trainer::campaign::{Campaign, Run};
 use trainer::expression::print;
+use trainer::metrics::levels::level_width;
 use trainer::model::Model;
 
 /// Shows what a blob, an Intel HEX file, a model or a campaign contains, and whether a device would take it.
@@ -94,6 +95,7 @@ pub struct RunSummary {
 
 impl RunSummary {
     pub fn of(campaign: &Campaign, run: &Run) -> Self {
+        let references: Vec<f64> = run.rows.iter().map(|row| row.reference_g).collect();
         let temperatures = || run.rows.iter().map(|row| f64::from(row.sample.temperature_uc) * 1e-6);
         let alone = Campaign::new(vec![run.clone()], campaign.channels.clone(), campaign.quantity.clone());
         Self {
@@ -104,7 +106,7 @@ impl RunSummary {
             hours: run.duration_s() / 3600.0,
             from_c: temperatures().fold(f64::MAX, f64::min),
             to_c: temperatures().fold(f64::MIN, f64::max),
-            levels: alone.levels(0.01).len(),
+            levels: alone.levels(level_width(&references)).len(),
         }
     }
 }
@@ -124,6 +126,12 @@ fn campaign(campaign: &Campaign) {
         ]);
     }
     anstream::print!("{table}");
+    if campaign.runs.iter().any(|run| run.has_calendar_time() && run.begins_with_power_on()) {
+        anstream::println!(
+            "time_s is a calendar's clock: time since power-on is counted from the first row of each run \
+             (a column power_on_s states another)."
+        );
+    }
     if !campaign.channels.is_empty() {
         anstream::println!("Auxiliary channels: {}", campaign.channels.join(", "));
     }

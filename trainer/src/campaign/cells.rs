@@ -1,10 +1,16 @@
 //! The cells of one record as numbers, each refusal with its place.
 
 use super::columns::{Input, Source};
-use super::error::{CampaignError, Facts, Place, quoted};
+use super::error::{CampaignError, Facts, Place, quoted, shortened};
+use super::limits::{self, MAX_NAME};
 use super::number::{Decimal, NotDecimal};
 use super::table::{Table, clean};
 use csv::ByteRecord;
+
+/// What an i64 of millionths holds.
+pub(super) const ANY: &str = "a number from -9.2e12 to 9.2e12";
+/// The same as a number. A float could be larger, and its square or its part of a reading could not.
+const LARGEST: f64 = i64::MAX as f64 * 1e-6;
 
 /// One record of a table.
 #[derive(Clone, Copy)]
@@ -42,6 +48,11 @@ impl<'a> Cells<'a> {
         if name.is_empty() {
             return Err(CampaignError::EmptyCell(Facts::boxed(self.place(input), "an empty cell", "a name")));
         }
+        if name.len() > MAX_NAME {
+            let found = format!("a name of {}, {}", limits::bytes(name.len() as u64), quoted(name));
+            let expected = format!("at most {}", limits::bytes(MAX_NAME as u64));
+            return Err(CampaignError::TooLong(Facts::boxed(self.place(input), found, expected)));
+        }
         // The whole file was checked to be UTF-8; a cell ends at ASCII characters.
         Ok(std::str::from_utf8(name).unwrap_or_default())
     }
@@ -73,13 +84,13 @@ impl<'a> Cells<'a> {
         let text = std::str::from_utf8(self.raw(input)).unwrap_or_default();
         let number = input.conversion.real(text.parse().unwrap_or_else(|_| decimal.to_f64()));
         // Adding zero turns −0 into 0, which is the same reference.
-        if number.is_finite() { Ok(number + 0.0) } else { Err(self.out_of_range(input, "a number below 1.8e308")) }
+        if number.abs() <= LARGEST { Ok(number + 0.0) } else { Err(self.out_of_range(input, ANY)) }
     }
 
     /// A number that does not fit into `range`.
     pub(super) fn out_of_range(&self, input: &Input, range: &str) -> CampaignError {
         let found = match input.source {
-            Source::Cell(_) => String::from_utf8_lossy(self.raw(input)).into_owned(),
+            Source::Cell(_) => shortened(self.raw(input)),
             Source::Row | Source::Constant(_) => input.header.clone(),
         };
         CampaignError::OutOfRange(Facts::boxed(self.place(input), found, range))

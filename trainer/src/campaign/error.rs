@@ -126,6 +126,15 @@ pub enum CampaignError {
     /// The operating system refuses to read it.
     #[error("{0}")]
     Unreadable(Box<Facts>),
+    /// A folder, device, pipe or socket where a file belongs.
+    #[error("{0}")]
+    NotAFile(Box<Facts>),
+    /// A file of more bytes than anybody recorded.
+    #[error("{0}")]
+    TooLarge(Box<Facts>),
+    /// A row, a header or a name of more than a table has.
+    #[error("{0}")]
+    TooLong(Box<Facts>),
     /// The name's ending is not that of a text table.
     #[error("{0}")]
     UnknownFileType(Box<Facts>),
@@ -265,6 +274,7 @@ impl CampaignError {
             | Self::UnknownRun { facts, .. }
             | Self::MissingChannel { facts, .. } => facts,
             Self::NothingGiven(facts) | Self::FileNotFound(facts) | Self::Unreadable(facts) => facts,
+            Self::NotAFile(facts) | Self::TooLarge(facts) | Self::TooLong(facts) => facts,
             Self::UnknownFileType(facts) | Self::Parquet(facts) | Self::NoTables(facts) => facts,
             Self::NotUtf8(facts) | Self::Manifest(facts) | Self::Empty(facts) => facts,
             Self::NoHeader(facts) | Self::HeaderOnly(facts) | Self::DuplicateColumn(facts) => facts,
@@ -287,14 +297,32 @@ impl CampaignError {
     }
 }
 
-/// `names` in a sentence: `columns a, b` or `no columns`.
+/// `names` in a sentence: `columns a, b` or `no columns`; not longer than anybody reads.
 pub(super) fn list(what: &str, names: &[String]) -> String {
-    if names.is_empty() { format!("no {what}") } else { format!("{what} {}", names.join(", ")) }
+    const MOST: usize = 40;
+    match names.get(..MOST) {
+        Some(first) if names.len() > MOST => {
+            format!("{what} {} and {} more", first.join(", "), names.len() - MOST)
+        }
+        _ if names.is_empty() => format!("no {what}"),
+        _ => format!("{what} {}", names.join(", ")),
+    }
+}
+
+/// The longest piece of a cell that an error shows, in characters.
+const LONGEST: usize = 40;
+
+/// A number as an error shows it: as written, and not longer than a line.
+pub(super) fn shortened(cell: &[u8]) -> String {
+    let text = String::from_utf8_lossy(cell);
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", text.get(..end).unwrap_or_default()),
+        None => text.into_owned(),
+    }
 }
 
 /// A cell as an error shows it: in quotes, and not longer than a line.
 pub(super) fn quoted(cell: &[u8]) -> String {
-    const LONGEST: usize = 40;
     let text = String::from_utf8_lossy(cell);
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{:?}…", text.get(..end).unwrap_or_default()),

@@ -64,6 +64,13 @@ fn plain(error: &CampaignError) -> &'static str {
         E::NothingGiven(_) => "Name the files or the folder of the campaign.",
         E::FileNotFound(_) => "Check the path; a folder stands for all .csv files in it.",
         E::Unreadable(_) => "Check that the file may be read, and that no other program holds it.",
+        E::NotAFile(_) => {
+            "Name a file; what comes out of a pipe or device is written to one first: cat PIPE > converted.csv."
+        }
+        E::TooLarge(_) => "Divide it into several files, a run each, and name their folder.",
+        E::TooLong(_) => {
+            "Check the separator, the line breaks, and that every quote is closed; a table has a line of names and one line a row."
+        }
         E::UnknownFileType(_) => "Export it as text: commas, semicolons or tabs, column names in the first line.",
         E::NoTables(_) => "Put the .csv files directly into this folder, or name the files one by one.",
         E::Manifest(_) => {
@@ -141,6 +148,9 @@ fn out_of_range(facts: &Facts) -> String {
     match column(facts) {
         (name, meaning @ ("time_s" | "power_on_s")) if facts.found.starts_with('-') => {
             format!("Begin at another zero: --map \"{meaning}={name}+10\".")
+        }
+        (name, meaning @ ("time_s" | "power_on_s")) => {
+            format!("Write it in seconds: --map \"{meaning}={name}*1e-6\" for microseconds, *1e-9 for nanoseconds.")
         }
         _ if facts.found.starts_with('-') => "Check the sign, and that the mapping names the right column.".to_owned(),
         (name, meaning) => format!("Check the unit; another one is a factor: --map \"{meaning}={name}*1e-3\"."),

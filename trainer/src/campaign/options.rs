@@ -2,8 +2,9 @@
 
 use super::columns::is_there;
 use super::error::{CampaignError, Facts, Place, quoted};
+use super::limits::MAX_MANIFEST;
 use super::table::Table;
-use super::{Quantity, table};
+use super::{Quantity, text};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -109,7 +110,7 @@ impl ReadOptions {
         if !path.is_file() {
             return Ok(Self::default());
         }
-        let text = table::read_text(&path)?;
+        let text = text::read_text(&path, MAX_MANIFEST)?;
         toml::from_str(&text).map_err(|error| not_understood(&path, &text, &error))
     }
 
@@ -185,7 +186,7 @@ impl ReadOptions {
 }
 
 fn not_understood(path: &Path, text: &str, error: &toml::de::Error) -> CampaignError {
-    let line = table::line_at(text.as_bytes(), error.span().map_or(0, |span| span.start));
+    let line = text::line_at(text.as_bytes(), error.span().map_or(0, |span| span.start));
     let content = text.lines().nth(line as usize - 1).unwrap_or_default();
     // The parser's message often ends with what it expected.
     let (found, expected) = error.message().split_once(", expected ").unwrap_or((error.message(), "valid TOML"));

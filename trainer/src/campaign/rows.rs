@@ -1,8 +1,9 @@
 //! The rows of one file, gathered into runs.
 
-use super::cells::Cells;
+use super::cells::{ANY, Cells};
 use super::columns::{Input, Layout, Signal};
 use super::error::{CampaignError, Facts, Place, quoted};
+use super::limits::MAX_UPTIME_US;
 use super::number::{Decimal, micro_text};
 use super::table::Table;
 use super::{Row, Run, UNSTATED};
@@ -13,8 +14,6 @@ use std::collections::HashMap;
 
 /// Kinds that the data contract names; their case does not matter.
 const KINDS: [&str; 5] = ["full", "zero", "ramp", "tumble", "static"];
-/// What an i64 of millionths holds.
-const ANY: &str = "a number from -9.2e12 to 9.2e12";
 /// The same for what cannot be negative.
 const NOT_NEGATIVE: &str = "a number from 0 to 9.2e12";
 /// What an i32 of millionths holds.
@@ -97,7 +96,7 @@ impl Auxiliary {
                 return Err(text.refused.clone());
             }
         }
-        let mut channels = [0; MAX_CHANNELS];
+        let mut channels = [Sample::NOT_MEASURED; MAX_CHANNELS];
         for (value, input) in channels.iter_mut().zip(&self.channels) {
             *value = cells.micro(input, ANY)?;
         }
@@ -116,14 +115,19 @@ struct Runs {
 impl Runs {
     fn push(&mut self, cells: Cells, layout: &Layout, auxiliary: &Auxiliary, name: &str) -> Result<(), CampaignError> {
         let name = layout.run.as_ref().map_or(Ok(name), |input| cells.name(input))?;
-        let kind = layout.kind.as_ref().map_or(UNSTATED, |input| kind(cells, input));
+        let kind = layout.kind.as_ref().map_or(Ok(UNSTATED), |input| kind(cells, input))?;
         let run = self.run(name, kind, cells);
         if let (Some(input), true) = (&layout.kind, run.kind != kind) {
             let expected = format!("{}, as in the rows of {name} above", quoted(run.kind.as_bytes()));
             let facts = Facts::boxed(cells.place(input), quoted(kind.as_bytes()), expected);
             return Err(CampaignError::KindContradiction(facts));
         }
-        let row = row(cells, layout, auxiliary)?;
+        let mut row = row(cells, layout, auxiliary)?;
+        let begins_us = run.rows.first().map_or(row.sample.time_us, |first| first.sample.time_us);
+        if layout.power_on.is_none() && begins_us > MAX_UPTIME_US {
+            // A calendar's clock does not say when power was applied; a run begins with that.
+            row.sample.power_on_us = row.sample.time_us.saturating_sub(begins_us);
+        }
         check_time(run, &row.sample, || cells.place(&layout.time))?;
         run.rows.push(row);
         Ok(())
@@ -150,11 +154,12 @@ impl Runs {
     }
 }
 
-fn kind<'a>(cells: Cells<'a>, input: &Input) -> &'a str {
-    match std::str::from_utf8(cells.raw(input)).unwrap_or_default() {
-        "" => UNSTATED,
-        kind => KINDS.into_iter().find(|known| known.eq_ignore_ascii_case(kind)).unwrap_or(kind),
+fn kind<'a>(cells: Cells<'a>, input: &Input) -> Result<&'a str, CampaignError> {
+    if cells.raw(input).is_empty() {
+        return Ok(UNSTATED);
     }
+    let kind = cells.name(input)?;
+    Ok(KINDS.into_iter().find(|known| known.eq_ignore_ascii_case(kind)).unwrap_or(kind))
 }
 
 fn check_time(run: &Run, sample: &Sample, place: impl Fn() -> Place) -> Result<(), CampaignError> {

@@ -1,14 +1,13 @@
 //! A text file as a table of cells: encoding, separator, comments, header, and where each record stands.
 
 use super::error::{CampaignError, Facts, Place, quoted};
+use super::limits::{self, MAX_COLUMNS, MAX_FILE, MAX_NAME, MAX_RECORD};
+use super::text::{line_at, read_text};
 use csv::{ByteRecord, Reader, ReaderBuilder};
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// File names that may hold a table, without the dot.
 const ENDINGS: [&str; 3] = ["csv", "tsv", "txt"];
-/// Editors of some systems put it before UTF-8 text.
-const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// A file's text, with its header understood.
 pub(super) struct Table {
@@ -26,7 +25,7 @@ impl Table {
     /// Reads a file up to its header.
     pub(super) fn open(file: &Path) -> Result<Self, CampaignError> {
         check_ending(file)?;
-        Self::of(file, read_text(file)?)
+        Self::of(file, read_text(file, MAX_FILE)?)
     }
 
     fn of(file: &Path, text: String) -> Result<Self, CampaignError> {
@@ -38,6 +37,7 @@ impl Table {
             return Err(CampaignError::Empty(Facts::boxed(Place::file(file), "no content", expected)));
         }
         table.header_line = table.line(&record);
+        table.check_names(&record)?;
         table.header = record.iter().map(|cell| String::from_utf8_lossy(clean(cell)).into_owned()).collect();
         Ok(table)
     }
@@ -55,10 +55,35 @@ impl Table {
             let more = reader.read_byte_record(record).map_err(|error| {
                 CampaignError::Unreadable(Facts::boxed(Place::file(&self.file), error.to_string(), "a readable table"))
             })?;
+            self.check_length(record)?;
             if !more || !record.iter().all(|cell| clean(cell).is_empty()) {
                 return Ok(more);
             }
         }
+    }
+
+    fn check_length(&self, record: &ByteRecord) -> Result<(), CampaignError> {
+        if record.as_slice().len() <= MAX_RECORD {
+            return Ok(());
+        }
+        let place = Place::file(&self.file).line(self.line(record));
+        let found = format!("a row of {}", limits::bytes(record.as_slice().len() as u64));
+        Err(CampaignError::TooLong(Facts::boxed(place, found, format!("at most {}", limits::bytes(MAX_RECORD as u64)))))
+    }
+
+    fn check_names(&self, header: &ByteRecord) -> Result<(), CampaignError> {
+        if header.len() > MAX_COLUMNS {
+            let found = format!("{} columns", header.len());
+            let expected = format!("at most {MAX_COLUMNS}");
+            return Err(CampaignError::TooLong(Facts::boxed(self.header_place(), found, expected)));
+        }
+        let long = header.iter().position(|cell| cell.len() > MAX_NAME);
+        let Some(index) = long else { return Ok(()) };
+        let name = header.get(index).unwrap_or_default();
+        let found =
+            format!("a name of {}, {}, in column {}", limits::bytes(name.len() as u64), quoted(name), index + 1);
+        let expected = format!("at most {}", limits::bytes(MAX_NAME as u64));
+        Err(CampaignError::TooLong(Facts::boxed(self.header_place(), found, expected)))
     }
 
     /// The line of a record. Counted when an error needs it: the reader's own line is that before skipped comments.
@@ -97,40 +122,6 @@ pub(super) fn clean(cell: &[u8]) -> &[u8] {
         // The reader removes quotes, but not those that stand behind a blank.
         [b'"', inner @ .., b'"'] => inner.trim_ascii(),
         inner => inner,
-    }
-}
-
-/// The line, from 1, in which the byte at `offset` stands.
-pub(super) fn line_at(text: &[u8], offset: usize) -> u64 {
-    let before = text.get(..offset).unwrap_or(text);
-    let feeds = before.iter().filter(|&&byte| byte == b'\n').count();
-    let lone_returns = before.windows(2).filter(|pair| pair[0] == b'\r' && pair[1] != b'\n').count();
-    (feeds + lone_returns) as u64 + 1
-}
-
-/// A file's text, without a byte order mark.
-pub(super) fn read_text(file: &Path) -> Result<String, CampaignError> {
-    let bytes = std::fs::read(file).map_err(|error| unreadable(file, &error))?;
-    let mut text = String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let bytes = error.as_bytes();
-        let line = line_at(bytes, valid);
-        let found = format!("byte 0x{:02X}", bytes.get(valid).copied().unwrap_or_default());
-        CampaignError::NotUtf8(Facts::boxed(Place::file(file).line(line), found, "UTF-8 text"))
-    })?;
-    if text.starts_with(BYTE_ORDER_MARK) {
-        text.remove(0);
-    }
-    Ok(text)
-}
-
-/// Why the operating system does not let us read it.
-pub(super) fn unreadable(file: &Path, error: &std::io::Error) -> CampaignError {
-    let place = Place::file(file);
-    if error.kind() == ErrorKind::NotFound {
-        CampaignError::FileNotFound(Facts::boxed(place, "no such file or folder", "a .csv file or a folder of them"))
-    } else {
-        CampaignError::Unreadable(Facts::boxed(place, error.to_string(), "a readable file"))
     }
 }
 

@@ -50,6 +50,11 @@ pub(super) fn mapped(map: &[(&str, &str)]) -> ReadOptions {
     ReadOptions { map: map.iter().map(owned).collect(), ..ReadOptions::default() }
 }
 
+/// These channels were measured and no others.
+fn channels(measured: &[i64]) -> [i64; MAX_CHANNELS] {
+    std::array::from_fn(|channel| measured.get(channel).copied().unwrap_or(Sample::NOT_MEASURED))
+}
+
 fn campaign(content: &str) -> Campaign {
     campaign_of(content, &ReadOptions::default())
 }
@@ -76,7 +81,7 @@ fn every_column_of_the_contract_is_read() {
         delta_f_uhz: 76_000_000_001,
         sum_f_uhz: Some(82_400_500_000),
         temperature_uc: -40_125_000,
-        channels: [3_300_000, 0, 0, 0, 0, 0, 0, 0],
+        channels: channels(&[3_300_000]),
         faults: Status::empty(),
     };
     assert_eq!(run.rows, [Row { sample, reference_g: -0.999, reference_sigma_g: Some(2e-6) }]);
@@ -207,10 +212,7 @@ fn a_manifest_beside_the_data_does_the_same() {
     let second = &campaign.runs[0].rows[1];
     assert_eq!(
         second.sample,
-        Sample {
-            channels: [3_301_000, 0, 0, 0, 0, 0, 0, 0],
-            ..Sample::from_difference(1_500_000, 400_560_000, 22_000_000)
-        }
+        Sample { channels: channels(&[3_301_000]), ..Sample::from_difference(1_500_000, 400_560_000, 22_000_000) }
     );
     assert_eq!(second.reference_g, 90.718474);
     assert_eq!(campaign.quantity, Quantity { signal_unit: "uV/V".into(), reference_unit: "kg".into() });
@@ -231,8 +233,32 @@ fn channels_are_arranged_for_a_model() {
     let campaign = campaign("time_s,delta_f_hz,temperature_c,reference_g,a_v,b_v,c_v\n0,0,0,0,1,2,3\n");
     let arranged = campaign.arranged(&["c_v", "a_v"]).expect("both are there");
     assert_eq!(arranged.channels, ["c_v", "a_v"]);
-    assert_eq!(arranged.runs[0].rows[0].sample.channels, [3_000_000, 1_000_000, 0, 0, 0, 0, 0, 0]);
+    assert_eq!(arranged.runs[0].rows[0].sample.channels, channels(&[3_000_000, 1_000_000]));
     assert_eq!(arranged.sha256, campaign.sha256);
+}
+
+#[test]
+fn a_calendars_clock_is_no_time_since_power_on() {
+    let rows = |power_on: &str, epoch: f64| {
+        let head = "run,time_s,delta_f_hz,temperature_c,reference_g";
+        let row = |run: &str, s: f64| format!("{run},{},0,0,0{}\n", epoch + s, power_on.replace("POWER_ON_S", ",5"));
+        let column = power_on.replace("POWER_ON_S", ",power_on_s");
+        campaign(&format!("{head}{column}\n{}{}{}{}", row("a", 2.0), row("b", 100.0), row("a", 9.0), row("b", 130.0)))
+    };
+    let power_on_s =
+        |campaign: &Campaign| -> Vec<f64> { campaign.rows().map(|row| row.sample.power_on_us as f64 * 1e-6).collect() };
+    for epoch in [1.7e9, 3.8e9, 1.7e12] {
+        let calendar = rows("", epoch);
+        assert_eq!(power_on_s(&calendar), [0.0, 7.0, 0.0, 30.0], "each run from its first row");
+        assert!(calendar.runs.iter().all(|run| run.has_calendar_time() && run.begins_with_power_on()));
+        assert_eq!(power_on_s(&rows("POWER_ON_S", epoch)), [5.0; 4], "a stated time stands");
+    }
+    for start in [0.0, 86_400.0, 1e8] {
+        let uptime = rows("", start);
+        let expected = [2.0, 9.0, 100.0, 130.0].map(|s| start + s);
+        assert_eq!(power_on_s(&uptime), expected, "one clock goes on from run to run");
+        assert!(!uptime.runs[0].has_calendar_time());
+    }
 }
 
 #[test]
@@ -261,7 +287,8 @@ fn what_is_written_is_read_again() {
 
 #[test]
 fn a_spoilt_file_is_read_or_refused_in_its_place() {
-    const SPOILT: [&str; 12] = [",", ";", "\t", "\"", "\n", "\r", "#", "e", "-", ".", "9999999999", "°"];
+    const SPOILT: [&str; 16] =
+        [",", ";", "\t", "\"", "\n", "\r", "#", "e", "-", ".", "9999999999", "°", "\0", "e30", "e-400", "\u{feff}"];
     let mut random = Xoshiro256PlusPlus::seed_from_u64(8);
     let mut pick = |from: usize| (random.next_u64() % from as u64) as usize;
     let intact = "run,time_s,f1_hz,f2_hz,temperature_c,reference_g,x_v\na,0,2,1,25,1,5\n# x\na,1,2.5,1,25,1e0,5\n";
