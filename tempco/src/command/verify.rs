@@ -66,7 +66,7 @@ impl Verify {
             // Beside the answer, which is the same every time.
             anstream::eprintln!("{per_s:.0} readings/s, there and back");
         }
-        Ok(if parity.identical == parity.samples { Answer::Yes } else { Answer::No })
+        Ok(if parity.holds() { Answer::Yes } else { Answer::No })
     }
 
     fn other(&self) -> Result<Answer, Failure> {
@@ -98,6 +98,13 @@ pub struct Parity {
     pub samples: usize,
     pub identical: usize,
     first_difference: Option<String>,
+}
+
+impl Parity {
+    /// Whether all of them had.
+    pub const fn holds(&self) -> bool {
+        self.identical == self.samples
+    }
 }
 
 impl std::fmt::Display for Parity {
@@ -176,4 +183,63 @@ fn compare_run(blob: &Blob, run: &Run, link: &mut AnyLink, parity: &mut Parity) 
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use firmware_core::Network;
+    use protocol::{Domain, Sample, Scaling, Timing, Weights};
+    use std::path::PathBuf;
+    use trainer::campaign::{Quantity, Row};
+
+    /// A calibration of 4 mg/Hz about 76 Hz with this bias.
+    fn blob(bias_g: f32) -> Blob {
+        let weights = Weights::from_array(&[0.0; 41]);
+        Blob {
+            serial: "A-1".try_into().expect("a short name"),
+            provenance: [0; 8],
+            proof: Network::<f32>::new(&weights).proof().expect("finite outputs"),
+            scaling: Scaling {
+                delta_f_zero_uhz: 76_000_000,
+                delta_f_gain_per_hz: 1.0,
+                temperature_zero_uc: 25_000_000,
+                temperature_gain_per_c: 0.02,
+                line_g: [bias_g, 0.004, 0.0, 0.0],
+                output_g: 0.0,
+            },
+            weights,
+            domain: Domain { delta_f_uhz: (0, 152_000_000), temperature_uc: (-40_000_000, 85_000_000) },
+            timing: Timing { max_gap_us: u32::MAX },
+            channels: Default::default(),
+            terms: Default::default(),
+        }
+    }
+
+    fn campaign() -> Campaign {
+        let row = |k: i64| Row {
+            sample: Sample::from_difference(k.unsigned_abs() * 1_000_000, k * 1_000_000, 25_000_000),
+            reference_g: 0.0,
+            reference_sigma_g: None,
+        };
+        let rows = (0..100).map(row).collect();
+        let run = Run { name: "run".into(), kind: "ramp".into(), source: PathBuf::new(), rows };
+        Campaign::new(vec![run], Vec::new(), Quantity::default())
+    }
+
+    #[test]
+    fn readings_of_the_same_calibration_are_identical_and_those_of_another_are_counted_as_other() {
+        let parity = verify(&blob(0.0), &campaign()).expect("an instrument");
+        assert_eq!((parity.samples, parity.identical), (100, 100));
+        assert!(parity.holds() && parity.first_difference.is_none());
+        // A thousandth of a µg shows only where the reading is small: floats near ±0.3 g are further apart.
+        for (bias_g, fewest) in [(1e-9, 1), (1e-3, 100)] {
+            let mut link = uploaded(&blob(bias_g)).expect("an instrument");
+            let go_on = |_| ControlFlow::Continue(());
+            let parity = compare(&blob(0.0), &campaign(), &mut link, go_on).expect("an answer");
+            assert_eq!(parity.samples, 100);
+            assert!(parity.identical <= 100 - fewest && !parity.holds(), "{parity}");
+            assert!(parity.first_difference.is_some_and(|place| place.starts_with("run run, row ")));
+        }
+    }
 }
