@@ -33,7 +33,7 @@ class Campaign:
 
     def __init__(self, path):
         with path.open() as file:
-            header, *rows = csv.reader(file)
+            header, *rows = csv.reader(line for line in file if not line.startswith("#"))
         columns = dict(zip(header, zip(*rows)))
         names = np.array(columns.pop("run", ["run"] * len(rows)))
         columns.pop("kind", None)

@@ -187,12 +187,30 @@ pub enum ScenarioError {
         part_s: f64,
     },
     /// A campaign that no memory holds.
-    #[error("the scenario asks for {rows} samples; {limit} is the limit, so raise `record_every_s`")]
+    #[error("the scenario asks for {rows} samples and more; {limit} is the limit, so raise `record_every_s`")]
     TooManyRows {
         /// Samples asked for.
         rows: u64,
         /// Samples allowed.
         limit: u64,
+    },
+    /// A campaign that takes for ever.
+    #[error("the scenario goes through {steps} time steps and more; {limit} is the limit, so raise `step_s`")]
+    TooManySteps {
+        /// Steps asked for.
+        steps: u64,
+        /// Steps allowed.
+        limit: u64,
+    },
+    /// More poses than anybody writes down.
+    #[error(
+        "the runs have {parts} parts and more; {limit} is the limit, so shorten their lists, or `repeat` them less"
+    )]
+    TooManyParts {
+        /// Parts asked for.
+        parts: usize,
+        /// Parts allowed.
+        limit: usize,
     },
 }
 

@@ -61,7 +61,8 @@ impl fmt::Display for CampaignDigest {
     }
 }
 
-const TITLE: &str = "tempco sealed truth 1";
+/// The first line of every envelope.
+pub const TITLE: &str = "tempco sealed truth 1";
 const HINT: &str = "What the campaign of this name hides. `tempco reveal` opens it; do not edit it.";
 const HEX_PER_LINE: usize = 96;
 

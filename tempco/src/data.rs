@@ -2,10 +2,13 @@
 
 use crate::failure::Failure;
 use crate::shell;
+use crate::terminal::remark;
 use clap::Args;
+use clap::builder::RangedU64ValueParser;
 use std::path::PathBuf;
 use trainer::campaign::{Campaign, HoldOut, Measured, ReadAs, ReadOptions};
 use trainer::model::Model;
+use trainer::train::TrainSettings;
 
 /// Where the measurements are, and how to read them.
 #[derive(Args, Clone)]
@@ -85,7 +88,7 @@ impl Reading {
         let in_force: Vec<String> = spelt(&campaign.read_as).filter(|words| !given.contains(words)).collect();
         let kept: Vec<String> = spelt(before).filter(|words| in_force.contains(words)).collect();
         if !kept.is_empty() {
-            anstream::eprintln!("Read as the model's campaign was: {}", kept.join(" "));
+            remark!("Read as the model's campaign was: {}", kept.join(" "));
         }
         Ok(campaign)
     }
@@ -155,6 +158,16 @@ fn words(options: &ReadOptions) -> impl Iterator<Item = String> + use<> {
 
 fn measured(column: Option<&String>, unit: Option<&String>) -> Option<Measured> {
     Some(Measured { column: column?.clone(), unit: unit?.clone() })
+}
+
+/// Seeds that fit into every file that names one.
+pub fn seeds() -> RangedU64ValueParser {
+    RangedU64ValueParser::new().range(..=TrainSettings::LARGEST_SEED)
+}
+
+/// Numbers of restarts that somebody could wait for.
+pub fn restarts() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..=TrainSettings::MOST_RESTARTS as u64)
 }
 
 /// Which runs to keep from training.

@@ -1,5 +1,6 @@
 //! Why a command could not do what it was asked, and the way out.
 
+use crate::terminal::visible;
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -31,11 +32,23 @@ impl From<Answer> for ExitCode {
 pub struct Failure {
     message: String,
     help: Option<String>,
+    /// Whoever read the answer has gone: nobody is left to be told.
+    #[serde(skip)]
+    nobody_reads: bool,
 }
 
 impl Failure {
     pub fn new(message: impl fmt::Display) -> Self {
-        Self { message: message.to_string(), help: None }
+        Self { message: message.to_string(), help: None, nobody_reads: false }
+    }
+
+    /// The reader of standard output has had enough.
+    pub fn nobody_reads() -> Self {
+        Self { nobody_reads: true, ..Self::new("nobody reads the answer") }
+    }
+
+    pub const fn is_nobody_reads(&self) -> bool {
+        self.nobody_reads
     }
 
     pub fn help(self, help: impl fmt::Display) -> Self {
@@ -49,9 +62,9 @@ impl Failure {
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "\x1b[1;31merror:\x1b[0m {}", self.message)?;
+        write!(f, "\x1b[1;31merror:\x1b[0m {}", visible(&self.message))?;
         match &self.help {
-            Some(help) => write!(f, "\n\x1b[1;36mhelp:\x1b[0m {help}"),
+            Some(help) => write!(f, "\n\x1b[1;36mhelp:\x1b[0m {}", visible(help)),
             None => Ok(()),
         }
     }

@@ -1,7 +1,7 @@
 //! Intel HEX: bytes with their addresses, as programmers take them.
 
 use crate::failure::Failure;
-use ihex::Record;
+use ihex::{ReaderError, Record};
 use std::path::Path;
 
 /// The text of a file that puts each piece at its address.
@@ -22,19 +22,27 @@ pub fn text(pieces: &[(u32, &[u8])]) -> Result<String, Failure> {
 /// The first piece of a file: its bytes up to the first gap.
 pub fn first_piece(file: &Path) -> Result<Vec<u8>, Failure> {
     let text = std::fs::read_to_string(file).map_err(|error| Failure::io(file, &error))?;
-    let (mut base, mut bytes, mut next) = (0_u32, Vec::new(), None);
-    for (line, record) in ihex::Reader::new(&text).enumerate() {
-        match record.map_err(|error| Failure::new(format_args!("{}:{}: {error}", file.display(), line + 1)))? {
+    let pieces =
+        pieces(&text).map_err(|(line, error)| Failure::new(format_args!("{}:{line}: {error}", file.display())))?;
+    Ok(pieces.into_iter().next().map(|(_, bytes)| bytes).unwrap_or_default())
+}
+
+/// Every piece of a text, its address and its bytes up to the next gap; or the line that is wrong, and why.
+pub fn pieces(text: &str) -> Result<Vec<(u32, Vec<u8>)>, (usize, ReaderError)> {
+    let mut pieces: Vec<(u32, Vec<u8>)> = Vec::new();
+    let mut base = 0_u32;
+    for (index, record) in ihex::Reader::new(text).enumerate() {
+        match record.map_err(|error| (index + 1, error))? {
             Record::ExtendedLinearAddress(high) => base = u32::from(high) << 16,
             Record::Data { offset, value } => {
                 let at = base + u32::from(offset);
-                if *next.get_or_insert(at) == at {
-                    next = Some(at + value.len() as u32);
-                    bytes.extend(value);
+                match pieces.last_mut() {
+                    Some((origin, bytes)) if origin.checked_add(bytes.len() as u32) == Some(at) => bytes.extend(value),
+                    _ => pieces.push((at, value)),
                 }
             }
             _ => {}
         }
     }
-    Ok(bytes)
+    Ok(pieces)
 }

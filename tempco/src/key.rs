@@ -1,11 +1,10 @@
 //! The factory's keys, as files of one line of hexadecimal digits.
 
 use crate::failure::Failure;
+use crate::output::{write_new, write_secret};
 use ed25519_compact::{KeyPair, Seed};
 use protocol::Signed;
 use std::fmt::Write;
-use std::fs::OpenOptions;
-use std::io::Write as _;
 use std::path::Path;
 
 /// A key that signs.
@@ -31,14 +30,7 @@ impl SecretKey {
 
     /// Writes it for its owner's eyes only; never over an older one.
     pub fn write(&self, path: &Path) -> Result<(), Failure> {
-        let mut options = OpenOptions::new();
-        options.write(true).create_new(true);
-        #[cfg(unix)]
-        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-        let written = options.open(path).and_then(|mut file| writeln!(file, "{}", digits(&*self.0.sk.seed())));
-        written.map_err(|error| {
-            Failure::io(path, &error).help("an existing key is never overwritten: choose another name")
-        })
+        write_secret(path, (digits(&*self.0.sk.seed()) + "\n").as_bytes())
     }
 
     /// What instruments hold.
@@ -53,9 +45,9 @@ impl SecretKey {
     }
 }
 
-/// Writes a public key.
+/// Writes a public key; never over an older one, which instruments may hold.
 pub fn write_public(path: &Path, key: &[u8; 32]) -> Result<(), Failure> {
-    std::fs::write(path, digits(key) + "\n").map_err(|error| Failure::io(path, &error))
+    write_new(path, (digits(key) + "\n").as_bytes())
 }
 
 /// Reads a public key.

@@ -19,6 +19,7 @@ mod report;
 mod shell;
 mod subject;
 mod table;
+mod terminal;
 mod workbench;
 
 use clap::Parser;
@@ -37,12 +38,19 @@ struct Cli {
     command: command::Command,
 }
 
+/// What a shell says of any tool whose reader went away, as `head` does.
+const NOBODY_READS: u8 = 141;
+
 fn main() -> ExitCode {
-    match Cli::parse().command.run() {
-        Ok(answer) => answer.into(),
-        Err(failure) => {
-            anstream::eprintln!("{failure}");
-            ExitCode::from(2)
+    let outcome = match Cli::try_parse() {
+        Ok(cli) => cli.command.run().map(ExitCode::from),
+        Err(error) => terminal::usage(&error).map(|()| ExitCode::from(if error.use_stderr() { 2 } else { 0 })),
+    };
+    outcome.unwrap_or_else(|failure| {
+        if failure.is_nobody_reads() {
+            return ExitCode::from(NOBODY_READS);
         }
-    }
+        terminal::failure(&failure);
+        ExitCode::from(2)
+    })
 }

@@ -1,6 +1,7 @@
 //! Pictures: one look for all of them. What is drawn is said by whoever draws.
 
 use crate::failure::Failure;
+use crate::output::GENERATOR;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -45,6 +46,9 @@ pub fn picture<E: Display>(
         draw_legend(&foot, legend)?;
         root.present().map_err(Failure::new)?;
     }
+    // By which tempco knows the picture again.
+    let after = svg.find('>').map_or(0, |end| end + 1);
+    svg.insert_str(after, &format!("<metadata>{GENERATOR}</metadata>"));
     Ok(svg)
 }
 

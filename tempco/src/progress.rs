@@ -1,5 +1,6 @@
 //! Progress bars, on a terminal only, and cancelling with Ctrl-C.
 
+use crate::terminal::visible_word;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;
@@ -13,7 +14,7 @@ pub fn bar(length: u64, what: &str) -> ProgressBar {
     }
     let style = ProgressStyle::with_template("{prefix:>12} [{bar:30}] {pos}/{len} {msg}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(length).with_style(style.progress_chars("=> ")).with_prefix(what.to_owned())
+    ProgressBar::new(length).with_style(style.progress_chars("=> ")).with_prefix(visible_word(what).into_owned())
 }
 
 /// Something that takes a while, nobody knows how long; nothing when nobody watches.
@@ -22,7 +23,7 @@ pub fn spinner(what: &str) -> ProgressBar {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{prefix:>12} {spinner}").unwrap_or_else(|_| ProgressStyle::default_bar());
-    let spinner = ProgressBar::new_spinner().with_style(style).with_prefix(what.to_owned());
+    let spinner = ProgressBar::new_spinner().with_style(style).with_prefix(visible_word(what).into_owned());
     spinner.enable_steady_tick(Duration::from_millis(120));
     spinner
 }

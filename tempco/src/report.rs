@@ -5,6 +5,7 @@ mod details;
 mod diagnosis;
 mod table;
 
+use crate::output::GENERATOR;
 use crate::page::{SCRIPT, STYLE, embedded_json, escaped};
 use serde_json::json;
 use trainer::report::{Chart, Report, Section};
@@ -20,6 +21,7 @@ pub fn html(report: &Report) -> serde_json::Result<String> {
     let data = embedded_json(&json!({ "runs": report.runs, "charts": charts }))?;
     Ok(format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"generator\" content=\"{GENERATOR}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>Compensation report {title}</title>\n<style>\n{STYLE}{REPORT_STYLE}</style>\n</head>\n\
          <body>\n<main>\n{main}</main>\n\

@@ -36,9 +36,14 @@ impl Subject {
         }
     }
 
+    /// Where the campaign is.
+    pub fn files(&self) -> &[PathBuf] {
+        self.words.get(usize::from(self.expression.is_none())..).unwrap_or_default()
+    }
+
     /// The campaign, read as the model's was, unless the options say otherwise.
     pub fn read_for(&self, model: &Model) -> Result<Campaign, Failure> {
-        let files = self.words.get(usize::from(self.expression.is_none())..).unwrap_or_default();
+        let files = self.files();
         if files.is_empty() {
             return Err(Failure::new("an effect and a campaign are needed, one of them is missing")
                 .help("write the effect first and the campaign after it, or --expression TEXT and the campaign"));

@@ -1,5 +1,6 @@
 //! Tables for people: columns padded to their widest cell, numbers to the right.
 
+use crate::terminal::visible_word;
 use std::fmt;
 
 /// A table with a header line.
@@ -9,17 +10,22 @@ pub struct Table {
 
 impl Table {
     pub fn new<const N: usize>(header: [&str; N]) -> Self {
-        Self { rows: vec![header.map(str::to_owned).to_vec()] }
+        Self::of(vec![header.map(str::to_owned).to_vec()])
     }
 
     /// A table whose number of columns is only known at run time; the first row is the header.
     pub fn of(rows: Vec<Vec<String>>) -> Self {
-        Self { rows }
+        Self { rows: rows.into_iter().map(shown).collect() }
     }
 
     pub fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.rows.push(cells.into());
+        self.rows.push(shown(cells.into()));
     }
+}
+
+/// A name from elsewhere must not break the line that it stands in.
+fn shown(cells: Vec<String>) -> Vec<String> {
+    cells.iter().map(|cell| visible_word(cell).into_owned()).collect()
 }
 
 impl fmt::Display for Table {
@@ -45,6 +51,13 @@ impl fmt::Display for Table {
 #[cfg(test)]
 mod tests {
     use super::Table;
+
+    #[test]
+    fn a_name_that_would_move_the_cursor_stands_in_its_column() {
+        let mut table = Table::new(["run", "µg"]);
+        table.row(["a\u{1b}[2J\nb".to_owned(), "1".to_owned()]);
+        assert_eq!(table.to_string(), "  run                µg\n  a\\u001b[2J\\u000ab   1\n");
+    }
 
     #[test]
     fn names_stand_left_and_figures_right_also_with_letters_of_two_bytes() {

@@ -16,7 +16,7 @@ use protocol::limits::{HIDDEN, MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_TERMS};
 use protocol::{Blob, Domain, Scaling, Term, Timing, Weights};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use thiserror::Error;
 
 /// Everything that training found, and how.
@@ -137,7 +137,7 @@ pub struct ModelNetwork {
 /// Why there is no model.
 #[derive(Debug, Error)]
 pub enum ModelError {
-    /// The file can't be read or written.
+    /// The file can't be read.
     #[error("{path}: {source}", path = path.display())]
     Io {
         /// The file.
@@ -251,14 +251,6 @@ pub enum DeviceLimit {
 impl Model {
     /// The format that this version reads and writes.
     pub const FORMAT: u32 = 1;
-
-    /// Writes the model file.
-    ///
-    /// # Errors
-    /// With the file and what the system said.
-    pub fn write(&self, path: &Path) -> Result<(), ModelError> {
-        std::fs::write(path, self.to_text()).map_err(|source| ModelError::Io { path: path.to_path_buf(), source })
-    }
 
     /// The model as text.
     ///

@@ -67,6 +67,30 @@ pub enum TrainError {
     /// The restart count is zero.
     #[error("at least one restart is needed")]
     NoRestarts,
+    /// More restarts than anybody waits for.
+    #[error("{found} restarts; at most {most} are made, so ask for fewer with --restarts")]
+    TooManyRestarts {
+        /// Asked for.
+        found: usize,
+        /// Made at most.
+        most: usize,
+    },
+    /// A device has room for so many letters.
+    #[error("serial number `{found}` is longer than the {most} bytes that a device has room for")]
+    LongSerial {
+        /// The serial number.
+        found: String,
+        /// Bytes that fit.
+        most: usize,
+    },
+    /// A model file holds no larger one.
+    #[error("seed {found} is above {most}, the largest that a model file holds")]
+    LargeSeed {
+        /// The seed.
+        found: u64,
+        /// The largest.
+        most: u64,
+    },
     /// Stopped before the first restart ended.
     #[error("cancelled before the first restart ended")]
     Cancelled,

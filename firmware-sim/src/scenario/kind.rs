@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scenario::limit::{Fault, each_within, positive, within};
+use crate::scenario::limit::{Fault, each_within, up_to, within};
 use crate::scenario::position::{self, Position};
 use crate::scenario::programme::{Programme, Segment};
 use crate::twin::random::Random;
@@ -77,9 +77,9 @@ impl Order {
 }
 
 /// The coldest and the hottest a chamber goes, °C.
-const CHAMBER_C: (f64, f64) = (-80.0, 180.0);
+pub(super) const CHAMBER_C: (f64, f64) = (-80.0, 180.0);
 /// The longest any part of a run may last: a year, s.
-const LONGEST_S: f64 = 366.0 * 86_400.0;
+pub(super) const LONGEST_S: f64 = 366.0 * 86_400.0;
 
 /// Records every position for `dwell_s`, after `settle_s` that are not kept.
 fn record_positions(programme: &mut Programme, positions: &[Position], settle_s: f64, dwell_s: f64) {
@@ -109,7 +109,7 @@ impl Places<'_> {
         within("soak_s", self.soak_s, 0.0, LONGEST_S)?;
         position::check(self.positions_deg, &[])?;
         within("settle_s", self.settle_s, 0.0, LONGEST_S)?;
-        positive("dwell_s", self.dwell_s)
+        up_to("dwell_s", self.dwell_s, LONGEST_S)
     }
 
     fn sweep(&self, programme: &mut Programme, sweep: &Sweep) {

@@ -20,6 +20,12 @@ impl Fault {
     pub fn new(field: &str, found: &dyn Display, expected: &str) -> Self {
         Self { field: field.into(), found: found.to_string(), expected: expected.into() }
     }
+
+    fn number(field: &str, found: f64, expected: &str) -> Self {
+        // 1e308 is no number to be read in full.
+        let is_plain = found == 0.0 || (1e-6..1e15).contains(&found.abs()) || !found.is_finite();
+        Self::new(field, &if is_plain { found.to_string() } else { format!("{found:e}") }, expected)
+    }
 }
 
 /// # Errors
@@ -28,25 +34,45 @@ pub fn within(field: &str, value: f64, min: f64, max: f64) -> Result<(), Fault> 
     if (min..=max).contains(&value) {
         return Ok(());
     }
-    Err(Fault::new(field, &value, &format!("between {min} and {max}")))
+    Err(Fault::number(field, value, &format!("between {min} and {max}")))
 }
 
 /// # Errors
-/// Unless the value is finite and above zero.
+/// Unless the value is above zero, and a number that a laboratory could mean.
 pub fn positive(field: &str, value: f64) -> Result<(), Fault> {
-    if value > 0.0 && value.is_finite() {
+    up_to(field, value, 1e9)
+}
+
+/// # Errors
+/// Unless the value is above zero and at most `most`.
+pub fn up_to(field: &str, value: f64, most: f64) -> Result<(), Fault> {
+    if value > 0.0 && value <= most {
         return Ok(());
     }
-    Err(Fault::new(field, &value, "above zero"))
+    Err(Fault::number(field, value, &format!("above zero and at most {most}")))
 }
 
 /// # Errors
-/// Unless the list has an entry and every entry lies between `min` and `max`.
+/// Unless the list has an entry, not too many, and every entry lies between `min` and `max`.
 pub fn each_within(field: &str, values: &[f64], min: f64, max: f64) -> Result<(), Fault> {
     if values.is_empty() {
         return Err(Fault::new(field, &"an empty list", "a list with at least one entry"));
     }
+    not_too_many(field, values)?;
     values.iter().try_for_each(|value| within(field, *value, min, max))
+}
+
+/// As many as there are degrees in a circle: a run takes every entry of one list with every entry of the others.
+const MOST_ENTRIES: usize = 360;
+
+/// # Errors
+/// If a list is longer than any programme of a laboratory.
+pub fn not_too_many(field: &str, values: &[f64]) -> Result<(), Fault> {
+    if values.len() <= MOST_ENTRIES {
+        return Ok(());
+    }
+    let found = format!("a list of {} entries", values.len());
+    Err(Fault::new(field, &found, &format!("a list of at most {MOST_ENTRIES}")))
 }
 
 #[cfg(test)]
@@ -60,5 +86,8 @@ mod tests {
         assert!(within("tau_s", f64::NAN, 1.0, 900.0).is_err());
         assert!(positive("tau_s", f64::INFINITY).is_err());
         assert!(each_within("nodes_c", &[], -40.0, 60.0).is_err());
+        assert!(each_within("nodes_c", &[20.0; 361], -40.0, 60.0).is_err());
+        let fault = up_to("dwell_s", 1e308, 31_622_400.0).unwrap_err();
+        assert_eq!(fault.to_string(), "`dwell_s` is 1e308; it must be above zero and at most 31622400");
     }
 }

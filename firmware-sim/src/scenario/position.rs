@@ -1,6 +1,6 @@
 //! How the device lies in the field of gravity.
 
-use crate::scenario::limit::{Fault, within};
+use crate::scenario::limit::{Fault, not_too_many, within};
 
 /// One pose of the device on the rig, as the rig believes it to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +59,8 @@ pub fn around(count: u32) -> Vec<Position> {
 /// # Errors
 /// Unless every angle lies within one turn and every level within the rig's reach.
 pub(crate) fn check(positions_deg: &[f64], levels_g: &[f64]) -> Result<(), Fault> {
+    not_too_many("positions_deg", positions_deg)?;
+    not_too_many("levels_g", levels_g)?;
     positions_deg.iter().try_for_each(|angle| within("positions_deg", *angle, -360.0, 360.0))?;
     levels_g.iter().try_for_each(|level| within("levels_g", *level, -CENTRIFUGE_MAX_G, CENTRIFUGE_MAX_G))?;
     if positions_deg.is_empty() && levels_g.is_empty() {

@@ -35,6 +35,9 @@ pub struct Segment {
     pub humidity_pct: f64,
 }
 
+/// The most parts that the runs of a scenario may have.
+pub(crate) const MAX_SEGMENTS: usize = 1_000_000;
+
 /// Writes segments one after the other; what is not said stays as it was.
 #[derive(Clone, Debug)]
 pub struct Programme {
@@ -127,7 +130,8 @@ impl Programme {
     }
 
     fn push(&mut self, duration_s: f64, recorded: bool) -> &mut Self {
-        if duration_s > 0.0 {
+        // A programme that is longer is refused: one part too many shows that.
+        if duration_s > 0.0 && self.segments.len() <= MAX_SEGMENTS {
             self.segments.push(Segment { duration_s, recorded, ..self.now.clone() });
         }
         self

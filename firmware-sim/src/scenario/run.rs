@@ -4,8 +4,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scenario::kind::Kind;
-use crate::scenario::limit::{Fault, positive, within};
+use crate::scenario::kind::{CHAMBER_C, Kind, LONGEST_S};
+use crate::scenario::limit::{Fault, positive, up_to, within};
 
 /// What every run states besides its kind. All but the name may be left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -113,7 +113,7 @@ impl Run {
         }
         within("repeat", f64::from(common.repeat), 1.0, 1000.0)?;
         common.age_days.map_or(Ok(()), |age| within("age_days", age, 0.0, 1e5))?;
-        positive("record_every_s", common.record_every_s)?;
+        up_to("record_every_s", common.record_every_s, LONGEST_S)?;
         if common.mount_rotation_deg != 0.0 && common.mount_rotation_deg != 180.0 {
             return Err(Fault::new("mount_rotation_deg", &common.mount_rotation_deg, "0 or 180"));
         }
@@ -121,6 +121,8 @@ impl Run {
         common.self_heating_tau_s.map_or(Ok(()), |tau| positive("self_heating_tau_s", tau))?;
         for bad in &common.bad_state {
             within("bad_state.delta_f_hz", bad.delta_f_hz, -1e4, 1e4)?;
+            within("bad_state.temperature_c", bad.temperature_c, CHAMBER_C.0, CHAMBER_C.1)?;
+            within("bad_state.position_deg", bad.position_deg, -360.0, 360.0)?;
         }
         self.kind.check()
     }

@@ -48,6 +48,94 @@ fn mistakes_say_where_and_what_to_do() {
     }
 }
 
+/// Every number of a table, and of the tables in it, replaced by `value`, one at a time; with its key. Counts are
+/// replaced by one that is too large.
+fn spoilt(table: &toml::Table, value: f64) -> Vec<(String, toml::Table)> {
+    let mut all = Vec::new();
+    for (key, old) in table {
+        let mut put = |new: toml::Value, name: String| {
+            let mut table = table.clone();
+            table.insert(key.clone(), new);
+            all.push((name, table));
+        };
+        match old {
+            toml::Value::Float(_) => put(value.into(), key.clone()),
+            toml::Value::Integer(_) => put(toml::Value::Integer(4_000_000_000), key.clone()),
+            toml::Value::Table(inner) => {
+                spoilt(inner, value).into_iter().for_each(|(name, table)| put(table.into(), name));
+            }
+            toml::Value::Array(entries) => {
+                for (index, entry) in entries.iter().enumerate() {
+                    let mut new = |entry: toml::Value, name: String| {
+                        let mut entries = entries.clone();
+                        entries[index] = entry;
+                        put(entries.into(), name);
+                    };
+                    match entry {
+                        toml::Value::Table(inner) => {
+                            spoilt(inner, value).into_iter().for_each(|(name, table)| new(table.into(), name));
+                        }
+                        toml::Value::Float(_) => new(value.into(), key.clone()),
+                        _ => {}
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    all
+}
+
+#[test]
+fn every_number_is_bounded_on_both_sides_and_the_refusal_names_its_key() {
+    let mut seen = 0;
+    for kind in kind::Kind::NAMES {
+        let text = format!(
+            "name = 'a'\n[[run]]\nname = 'z'\nkind = '{kind}'\nage_days = 1\n[[run.bad_state]]\ntemperature_c = 20\nposition_deg = 0\ndelta_f_hz = 1\n"
+        );
+        let mut scenario = Scenario::from_toml(&text).unwrap();
+        for name in Effects::NAMES {
+            scenario.effects.switch_on(name, 1.0);
+        }
+        let table: toml::Table = scenario.to_toml().parse().unwrap();
+        for number in [1e308, -1e308, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for (key, table) in spoilt(&table, number) {
+                let text = toml::to_string(&table).unwrap();
+                let error = Scenario::from_toml(&text).map(|_| ()).expect_err(&format!("{kind}: {key} = {number}"));
+                assert!(error.to_string().contains(&key), "{kind}: {key} = {number}: {error}");
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 1000, "{seen}");
+}
+
+#[test]
+fn what_no_memory_holds_and_nobody_waits_for_is_refused_at_once() {
+    let run =
+        |kind: &str, more: &str| format!("name = 'a'\nstep_s = 0.01\n[[run]]\nname = 'z'\nkind = '{kind}'\n{more}");
+    let list = |value: f64| format!("{:?}", vec![value; 360]);
+    let many = format!(
+        "temperatures_c = {}\npositions_deg = {}\noffsets_pct = {}\ndwell_s = 1e-2\nrecord_every_s = 0.01\nsettle_s = 0",
+        list(20.0),
+        list(1.0),
+        list(1.0)
+    );
+    for (text, expected) in [
+        (run("zero", "duration_s = 3e7\nrecord_every_s = 0.01"), "samples"),
+        (run("soak", "dwell_s = 3e7\nrecord_every_s = 3e7\nrepeat = 1000"), "time steps"),
+        (run("supply", &many), "parts"),
+        (
+            run("tumble", "positions = 360\ndwell_s = 0.01\nrecord_every_s = 0.01\nsettle_s = 0.01\nrepeat = 1000"),
+            "parts",
+        ),
+        (run("full", &format!("nodes_c = {:?}", vec![20.0; 361])), "`nodes_c` is a list of 361 entries"),
+    ] {
+        let error = Scenario::from_toml(&text).unwrap_err().to_string();
+        assert!(error.contains(expected) && error.contains("limit") | error.contains("at most"), "{expected}: {error}");
+    }
+}
+
 #[test]
 fn the_readme_lists_every_kind_and_every_preset_with_its_samples() {
     let readme = include_str!("../../scenarios/README.md");

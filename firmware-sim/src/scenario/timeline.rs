@@ -2,14 +2,18 @@
 //!
 //! Apart from the simulation so that a scenario can be refused, and its length told, before anything is simulated.
 
-use crate::scenario::programme::{Programme, Segment};
+use crate::scenario::programme::{MAX_SEGMENTS, Programme, Segment};
 use crate::scenario::{Run, Scenario, ScenarioError};
 use crate::twin::random::Random;
+use std::collections::HashSet;
 
 /// Seconds in a day.
 pub(crate) const DAY_S: f64 = 86_400.0;
 /// The most samples that a scenario may ask for: about 2 GB in memory.
 const MAX_ROWS: u64 = 10_000_000;
+
+/// The most time steps that may be simulated: an hour or so of work.
+const MAX_STEPS: u64 = 10_000_000_000;
 
 /// All runs of a scenario in order of time.
 #[derive(Clone, Debug)]
@@ -40,39 +44,62 @@ impl<'a> Timeline<'a> {
     /// If runs overlap, share a name, keep nothing, or keep too much.
     pub fn of(scenario: &'a Scenario, seed: u64) -> Result<Self, ScenarioError> {
         let mut runs: Vec<PlannedRun> = Vec::new();
+        let mut names = HashSet::new();
+        let mut sum = Sum::default();
         for run in &scenario.run {
             for repetition in 0..run.common.repeat {
                 let ends_s = runs.last().map(|run| run.begins_s + run.duration_s());
                 let begins_s = begins_s(scenario, run, repetition, ends_s)?;
                 let planned = PlannedRun::new(scenario, run, repetition, begins_s, seed ^ runs.len() as u64);
                 planned.check(scenario.step_s)?;
-                if runs.iter().any(|other| other.name == planned.name) {
+                sum.add(&planned, scenario.step_s)?;
+                if !names.insert(planned.name.clone()) {
                     return Err(ScenarioError::SameName { name: planned.name });
                 }
                 runs.push(planned);
             }
         }
         let timeline = Self { runs };
-        match timeline.rows(scenario.step_s) {
-            0 => Err(ScenarioError::NoRun),
-            rows if rows > MAX_ROWS => Err(ScenarioError::TooManyRows { rows, limit: MAX_ROWS }),
-            _ => Ok(timeline),
-        }
+        if sum.rows == 0 { Err(ScenarioError::NoRun) } else { Ok(timeline) }
     }
 
     /// How many samples the campaign will have.
     #[must_use]
     pub fn rows(&self, step_s: f64) -> u64 {
-        let kept = |run: &PlannedRun| -> u64 {
-            run.segments.iter().filter(|s| s.recorded).map(|s| s.steps(step_s) / run.every).sum()
-        };
-        self.runs.iter().map(kept).sum()
+        self.runs.iter().map(|run| run.rows(step_s)).sum()
     }
 
     /// Simulated time within runs, s.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.runs.iter().map(PlannedRun::duration_s).sum()
+    }
+}
+
+/// What the runs so far ask for. Looked at with every run: what no memory holds must not be laid out first.
+#[derive(Default)]
+struct Sum {
+    rows: u64,
+    steps: u64,
+    segments: usize,
+}
+
+impl Sum {
+    fn add(&mut self, run: &PlannedRun, step_s: f64) -> Result<(), ScenarioError> {
+        let steps = run.segments.iter().map(|segment| segment.steps(step_s)).fold(0, u64::saturating_add);
+        self.rows = self.rows.saturating_add(run.rows(step_s));
+        self.steps = self.steps.saturating_add(steps);
+        self.segments += run.segments.len();
+        if self.rows > MAX_ROWS {
+            return Err(ScenarioError::TooManyRows { rows: self.rows, limit: MAX_ROWS });
+        }
+        if self.steps > MAX_STEPS {
+            return Err(ScenarioError::TooManySteps { steps: self.steps, limit: MAX_STEPS });
+        }
+        if self.segments > MAX_SEGMENTS {
+            return Err(ScenarioError::TooManyParts { parts: self.segments, limit: MAX_SEGMENTS });
+        }
+        Ok(())
     }
 }
 
@@ -102,6 +129,12 @@ impl<'a> PlannedRun<'a> {
             every: ((run.common.record_every_s / scenario.step_s).round() as u64).max(1),
             segments: programme.segments(),
         }
+    }
+
+    /// How many samples it keeps.
+    fn rows(&self, step_s: f64) -> u64 {
+        let recorded = self.segments.iter().filter(|segment| segment.recorded);
+        recorded.map(|segment| segment.steps(step_s) / self.every).fold(0, u64::saturating_add)
     }
 
     /// Length of the run, s.

@@ -2,6 +2,7 @@
 
 use super::change::{Change, ladder};
 use crate::failure::{Answer, Failure};
+use crate::output::{Force, Kind, Output};
 use crate::subject::Subject;
 use clap::Args;
 use std::path::PathBuf;
@@ -27,6 +28,9 @@ pub struct Add {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
+    #[command(flatten)]
+    force: Force,
+
     /// Prints one JSON object instead of text
     #[arg(long)]
     json: bool,
@@ -34,10 +38,13 @@ pub struct Add {
 
 impl Add {
     pub fn run(&self) -> Result<Answer, Failure> {
+        let output = Output::file(&self.output, Kind::Model, "-o", self.force);
+        let output = output.reading(self.subject.files().iter().chain([&self.model]));
+        output.check()?;
         let model = Model::read(&self.model)?;
         let campaign = self.subject.read_for(&model)?;
         let change = Change::of(&model, &campaign)?.scaled(self.subject.scale_factor);
         let effects = change.with(EffectChoice { channel: self.channel.clone(), ..self.subject.effect() })?;
-        ladder(&change, &effects, &self.output, self.json)
+        ladder(&change, &effects, &output, self.json)
     }
 }

@@ -2,9 +2,10 @@
 
 use super::train::train_with_bar;
 use crate::failure::{Answer, Failure};
+use crate::output::Output;
 use crate::render;
 use crate::table::Table;
-use std::path::Path;
+use crate::terminal::say;
 use trainer::campaign::{Campaign, Split};
 use trainer::compare::{Comparison, compare};
 use trainer::ladder::{BARE, Rung};
@@ -93,25 +94,25 @@ impl<'a> Change<'a> {
 }
 
 /// Climbs with a progress bar, writes the model on the last rung, and prints the ladder.
-pub fn ladder(change: &Change, effects: &[EffectChoice], output: &Path, json: bool) -> Result<Answer, Failure> {
+pub fn ladder(change: &Change, effects: &[EffectChoice], output: &Output, json: bool) -> Result<Answer, Failure> {
     let train =
         |split: &Split, settings: &TrainSettings, name: &str| train_with_bar(change.campaign, split, settings, name);
     let Ladder { rungs, model, comparison } = change.climb(effects, train, |_| ())?;
-    model.write(output)?;
+    output.write(model.to_text().as_bytes())?;
     if json {
         let mut value = serde_json::json!(comparison);
         value["ladder"] = serde_json::json!(rungs);
         value["effects"] = serde_json::json!(model.effects);
-        anstream::println!("{value:#}");
+        say!("{value:#}")?;
     } else {
         let noise = comparison.noise_floor_ug.map(|noise_ug| ("noise from sample to sample", noise_ug));
-        anstream::println!("{}", rungs_table(&rungs, noise));
+        say!("{}", rungs_table(&rungs, noise))?;
         for effect in &model.effects {
             let values: Vec<String> =
                 effect.parameters.iter().map(|(name, value)| format!("{name} = {value:.4e}")).collect();
-            anstream::println!("  {}: {}", effect.title(), values.join(", "));
+            say!("  {}: {}", effect.title(), values.join(", "))?;
         }
-        anstream::println!("\n{}Model written to {}", render::comparison(&comparison), output.display());
+        say!("\n{}Model written to {}", render::comparison(&comparison), output.path().display())?;
     }
     Ok(Answer::Yes)
 }

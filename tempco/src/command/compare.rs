@@ -3,9 +3,11 @@
 use super::diagnose::diagnosed;
 use crate::data::Data;
 use crate::failure::{Answer, Failure};
+use crate::output::{Force, Kind, Output};
 use crate::progress::Restarts;
 use crate::render;
 use crate::report::html;
+use crate::terminal::say;
 use clap::Args;
 use std::path::PathBuf;
 use trainer::campaign::Campaign;
@@ -40,6 +42,9 @@ pub struct Compare {
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
 
+    #[command(flatten)]
+    force: Force,
+
     /// Diagnoses for the report which effects are missing
     #[arg(long, requires = "report")]
     diagnose: bool,
@@ -51,6 +56,10 @@ pub struct Compare {
 
 impl Compare {
     pub fn run(&self) -> Result<Answer, Failure> {
+        let inputs = || self.data.files.iter().chain([&self.model]);
+        let report =
+            self.report.as_ref().map(|path| Output::file(path, Kind::Report, "--report", self.force).reading(inputs()));
+        report.as_ref().map_or(Ok(()), Output::check)?;
         let model = Model::read(&self.model)?;
         let campaign = self.data.read_for(&model)?;
         let comparison = compare(&model, &campaign)?;
@@ -58,18 +67,18 @@ impl Compare {
         if self.json {
             let mut value = serde_json::json!(comparison);
             value["cross_validation"] = serde_json::json!(validation);
-            anstream::println!("{value:#}");
+            say!("{value:#}")?;
         } else {
-            anstream::println!("{}", render::comparison(&comparison));
+            say!("{}", render::comparison(&comparison))?;
             if let Some(validation) = &validation {
-                anstream::println!("{}", render::cross_validation(validation));
+                say!("{}", render::cross_validation(validation))?;
             }
         }
-        if let Some(path) = &self.report {
+        if let Some((path, output)) = self.report.as_ref().zip(report) {
             let html = html(&self.report(&model, &campaign)?).map_err(Failure::new)?;
-            std::fs::write(path, html).map_err(|error| Failure::io(path, &error))?;
+            output.write(html.as_bytes())?;
             if !self.json {
-                anstream::println!("Report written to {}", path.display());
+                say!("Report written to {}", path.display())?;
             }
         }
         let exceeded = self.fail_above.is_some_and(|limit_ug| comparison.residual_ug > limit_ug);
@@ -92,7 +101,7 @@ impl Compare {
 /// What each effect of the model is worth. The lower rungs are trained again, as `add` did.
 fn rungs(model: &Model, campaign: &Campaign) -> Result<Vec<Rung>, Failure> {
     let settings = retrain::settings(model);
-    let progress = Restarts::new(settings.restarts * model.effects.len(), "ladder");
+    let progress = Restarts::new(settings.restarts.saturating_mul(model.effects.len()), "ladder");
     Ok(ladder(model, campaign, &retrain::split(model, campaign)?, &settings, &progress)?)
 }
 

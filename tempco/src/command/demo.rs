@@ -5,10 +5,13 @@ use super::diagnose::diagnosed;
 use super::simulate::{self, blind::Blind};
 use super::train::{Simpler, train_with_bar};
 use super::{export, reveal, verify};
+use crate::data::seeds;
 use crate::failure::{Answer, Failure};
+use crate::output::{Force, Kind, Output, make_folder};
 use crate::render::diagnosis;
 use crate::shell;
 use crate::table::Table;
+use crate::terminal::say;
 use clap::Args;
 use firmware_sim::scenario::Scenario;
 use firmware_sim::seal::SealedTruth;
@@ -31,8 +34,11 @@ pub struct Demo {
     output: PathBuf,
 
     /// Seed of every random number, and of what is hidden
-    #[arg(long, default_value_t = SEED)]
+    #[arg(long, default_value_t = SEED, value_parser = seeds())]
     seed: u64,
+
+    #[command(flatten)]
+    force: Force,
 }
 
 /// Hides an effect of three times the noise: plain to a diagnosis, invisible to a reader of the table.
@@ -53,18 +59,29 @@ pub struct Measured {
 
 impl Demo {
     pub fn run(&self) -> Result<Answer, Failure> {
-        std::fs::create_dir_all(&self.output).map_err(|error| Failure::io(&self.output, &error))?;
-        let measured = measure(&self.output, self.seed)?;
-        announce(&measured);
+        make_folder(&self.output)?;
+        for name in ["model.toml", "better.toml", "calibration.bin", "calibration.hex"] {
+            self.place(name).check()?;
+        }
+        let place = |path: &Path, kind| Output::in_folder(path, kind, "--output", self.force);
+        let measured = measured(&self.output, self.seed, &place)?;
+        announce(&measured)?;
         let trained = self.train(&measured)?;
         let diagnosis = diagnosed(&trained.model, &measured.campaign)?;
-        anstream::println!("3. Diagnosis\n{}", diagnosis::short(&diagnosis));
+        say!("3. Diagnosis\n{}", diagnosis::short(&diagnosis))?;
         let model = self.add(&measured, &trained, &diagnosis)?;
         let answer = self.deliver(&measured, &model)?;
         let truth = reveal::opened(&measured.envelope, &measured.data)?;
-        anstream::println!("7. The truth\n{}\n{}\n", reveal::words(&truth, &measured.data), judged(&truth, &diagnosis));
-        self.further(&measured.data);
+        say!("7. The truth\n{}\n{}\n", reveal::words(&truth, &measured.data), judged(&truth, &diagnosis))?;
+        self.further(&measured.data)?;
         Ok(answer)
+    }
+
+    /// One of the files besides the campaign.
+    fn place(&self, name: &str) -> Output {
+        let path = self.output.join(name);
+        let kind = if name.ends_with(".toml") { Kind::Model } else { export::kind(&path) };
+        Output::in_folder(&path, kind, "--output", self.force)
     }
 
     fn settings(&self, effects: Vec<EffectChoice>) -> TrainSettings {
@@ -75,14 +92,14 @@ impl Demo {
     fn train(&self, measured: &Measured) -> Result<Trained, Failure> {
         let Measured { campaign, split, noise_ug, .. } = measured;
         let trained = train_with_bar(campaign, split, &self.settings(Vec::new()), "training")?;
-        trained.model.write(&self.output.join("model.toml"))?;
+        self.place("model.toml").write(trained.model.to_text().as_bytes())?;
         let mut table = Table::new(["model", "held-out residual µg", "times the noise"]);
         let simpler = Simpler::all(&trained, campaign, split).into_iter().map(|one| (one.model, one.residual_ug));
         let network = ("network", compare(&trained.model, campaign)?.residual_ug);
         for (name, residual_ug) in simpler.chain([network]) {
             table.row([name.to_owned(), format!("{residual_ug:.2}"), format!("{:.2}", residual_ug / noise_ug)]);
         }
-        anstream::println!("2. Models without the effect\n{table}");
+        say!("2. Models without the effect\n{table}")?;
         Ok(trained)
     }
 
@@ -90,45 +107,53 @@ impl Demo {
     fn add(&self, measured: &Measured, trained: &Trained, diagnosis: &Diagnosis) -> Result<Model, Failure> {
         let Measured { campaign, split, noise_ug, .. } = measured;
         let Some(effect) = diagnosis::first_to_add(diagnosis) else {
-            anstream::println!("4. Nothing to add: the model stays as it is\n");
+            say!("4. Nothing to add: the model stays as it is\n")?;
             return Ok(trained.model.clone());
         };
         let better = train_with_bar(campaign, split, &self.settings(vec![EffectChoice::named(effect)]), effect)?.model;
-        better.write(&self.output.join("better.toml"))?;
+        self.place("better.toml").write(better.to_text().as_bytes())?;
         let rungs = [("network alone", &trained.model), (effect, &better)];
         let rung = |(name, model): (&str, &Model)| {
             Ok(Rung { effect: name.to_owned(), residual_ug: compare(model, campaign)?.residual_ug })
         };
         let rungs = rungs.into_iter().map(rung).collect::<Result<Vec<_>, Failure>>()?;
         let noise = ("noise alone, says the simulation", *noise_ug);
-        anstream::println!("4. The model with the effect\n{}", rungs_table(&rungs, Some(noise)));
+        say!("4. The model with the effect\n{}", rungs_table(&rungs, Some(noise)))?;
         Ok(better)
     }
 
     fn deliver(&self, measured: &Measured, model: &Model) -> Result<Answer, Failure> {
         let bytes = model.to_bytes()?;
-        export::write(&self.output.join("calibration.bin"), &bytes)?;
-        let address = export::write(&self.output.join("calibration.hex"), &bytes)?;
-        anstream::println!("5. Calibration exported: {} bytes{address}", bytes.len());
+        let mut address = String::new();
+        for name in ["calibration.bin", "calibration.hex"] {
+            let (content, where_to) = export::content(&self.output.join(name), &bytes)?;
+            self.place(name).write(&content)?;
+            address = where_to;
+        }
+        say!("5. Calibration exported: {} bytes{address}", bytes.len())?;
         let parity = verify::verify(&model.to_blob()?, &arranged(model, &measured.campaign)?)?;
-        anstream::println!("6. Virtual instrument, over its own wire: {parity}\n");
+        say!("6. Virtual instrument, over its own wire: {parity}\n")?;
         Ok(if parity.identical == parity.samples { Answer::Yes } else { Answer::No })
     }
 
-    fn further(&self, data: &Path) {
+    fn further(&self, data: &Path) -> Result<(), Failure> {
         let model = self.output.join("model.toml");
-        anstream::println!("The files are in {}.", self.output.display());
-        anstream::println!("Look closer:   tempco diagnose {} {}", shell::path(&model), shell::path(data));
-        anstream::println!("Another seed:  tempco demo --seed {}", self.seed + 1);
+        say!("The files are in {}.", self.output.display())?;
+        say!("Look closer:   tempco diagnose {} {}", shell::path(&model), shell::path(data))?;
+        say!("Another seed:  tempco demo --seed {}", self.seed.wrapping_add(1))
     }
 }
 
 /// Measures the blind campaign into a folder, and seals the truth beside it.
 pub fn measure(folder: &Path, seed: u64) -> Result<Measured, Failure> {
+    measured(folder, seed, &Output::own)
+}
+
+fn measured(folder: &Path, seed: u64, place: &dyn Fn(&Path, Kind) -> Output) -> Result<Measured, Failure> {
     let scenario =
         Scenario::preset(SCENARIO).ok_or_else(|| Failure::new(format_args!("no scenario named {SCENARIO}")))?;
     let data = folder.join("campaign.csv");
-    let envelope = Blind::ONE.measure(&scenario, seed, &data)?.envelope;
+    let envelope = Blind::ONE.measure(&scenario, seed, &data, place)?.envelope;
     let campaign = Campaign::read(std::slice::from_ref(&data), &ReadOptions::default())?;
     let split = campaign.split(&HoldOut::LastOfEachKind)?;
     let noise_ug = noise_ug(&scenario, seed, &held_out(&campaign, &split))?;
@@ -139,12 +164,12 @@ fn held_out<'a>(campaign: &'a Campaign, split: &Split) -> Vec<&'a str> {
     split.held_out.iter().map(|&index| campaign.runs[index].name.as_str()).collect()
 }
 
-fn announce(Measured { campaign, split, envelope, noise_ug, .. }: &Measured) {
+fn announce(Measured { campaign, split, envelope, noise_ug, .. }: &Measured) -> Result<(), Failure> {
     let (rows, runs) = (campaign.row_count(), campaign.runs.len());
-    anstream::println!("1. Measurements: {rows} rows in {runs} runs. They hide an effect;");
-    anstream::println!("   what it is, is sealed in {} until the end.", envelope.display());
-    anstream::println!("   held out, never seen by any training: {}", held_out(campaign, split).join(", "));
-    anstream::println!("   noise alone would leave {noise_ug:.2} µg there, says the simulation\n");
+    say!("1. Measurements: {rows} rows in {runs} runs. They hide an effect;")?;
+    say!("   what it is, is sealed in {} until the end.", envelope.display())?;
+    say!("   held out, never seen by any training: {}", held_out(campaign, split).join(", "))?;
+    say!("   noise alone would leave {noise_ug:.2} µg there, says the simulation\n")
 }
 
 /// The same campaign without what is hidden: its noise may be known.

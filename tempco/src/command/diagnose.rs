@@ -5,6 +5,7 @@ use crate::failure::{Answer, Failure};
 use crate::progress::spinner;
 use crate::render::diagnosis;
 use crate::shell;
+use crate::terminal::say;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use trainer::campaign::Campaign;
@@ -36,10 +37,10 @@ impl Diagnose {
         let model = Model::read(&self.model)?;
         let diagnosis = diagnosed(&model, &self.data.read_for(&model)?)?;
         if self.json {
-            anstream::println!("{:#}", serde_json::json!(diagnosis));
+            say!("{:#}", serde_json::json!(diagnosis))?;
         } else {
-            anstream::println!("{}", diagnosis::text(&diagnosis));
-            anstream::println!("Next:  {}", next(&diagnosis, &self.model, &self.data.command_line()));
+            say!("{}", diagnosis::text(&diagnosis))?;
+            say!("Next:  {}", next(&diagnosis, &self.model, &self.data.command_line()))?;
         }
         let missing = diagnosis.verdict != Verdict::NothingMissing;
         Ok(if self.fail_if_missing && missing { Answer::No } else { Answer::Yes })

@@ -1,6 +1,7 @@
 //! `tempco effects`
 
 use crate::failure::{Answer, Failure};
+use crate::terminal::say;
 use clap::Args;
 use firmware_core::effect::{ALL, About, about};
 use std::fmt::Write;
@@ -19,14 +20,14 @@ impl Effects {
         match &self.name {
             None => {
                 for about in ALL {
-                    anstream::println!("{:20} {}", about.name, about.summary);
+                    say!("{:20} {}", about.name, about.summary)?;
                 }
             }
             Some(name) => {
                 let about = about(name).ok_or_else(|| {
                     Failure::new(format_args!("there is no effect named `{name}`")).help("`tempco effects` lists them")
                 })?;
-                anstream::print!("{}", explain(about));
+                say!("{}", explain(about).trim_end())?;
             }
         }
         Ok(Answer::Yes)

@@ -4,6 +4,7 @@ use crate::failure::{Answer, Failure};
 use crate::key::{SecretKey, digits};
 use crate::link::{AnyLink, PORTS, Port};
 use crate::progress::spinner;
+use crate::terminal::say;
 use clap::Args;
 use firmware_sim::link::{Kept, LinkError};
 use protocol::{Blob, Refusal};
@@ -78,20 +79,17 @@ impl Flash {
             };
             let answer =
                 serde_json::json!({ "calibration": name, "bytes": bytes.len(), "kept": kept, "refusal": refusal });
-            anstream::println!("{answer:#}");
+            say!("{answer:#}")?;
             return Ok(());
         }
         match outcome {
             Ok(Kept::ForGood) => {
-                anstream::println!(
-                    "Calibration {name}, {} bytes, is stored, in use, and reads back the same.",
-                    bytes.len()
-                );
+                say!("Calibration {name}, {} bytes, is stored, in use, and reads back the same.", bytes.len())?;
             }
-            Ok(Kept::UntilPowerOff) => anstream::println!(
+            Ok(Kept::UntilPowerOff) => say!(
                 "Calibration {name} is in use, but the instrument could not store it: it runs from RAM until power-off."
-            ),
-            Err(refusal) => anstream::println!("The instrument refused: {refusal}. Its calibration runs on."),
+            )?,
+            Err(refusal) => say!("The instrument refused: {refusal}. Its calibration runs on.")?,
         }
         Ok(())
     }

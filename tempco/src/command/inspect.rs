@@ -4,6 +4,7 @@ use crate::data::Data;
 use crate::failure::{Answer, Failure};
 use crate::hex::first_piece;
 use crate::table::Table;
+use crate::terminal::say;
 use clap::Args;
 use firmware_core::Compensator;
 use firmware_core::effect::ALL;
@@ -30,11 +31,11 @@ impl Inspect {
             Some("hex") => blob(&first_piece(file)?),
             Some("toml") => {
                 let model = Model::read(file)?;
-                anstream::println!("{}", model.to_text());
+                say!("{}", model.to_text())?;
                 blob(&model.to_bytes()?)
             }
             _ => {
-                campaign(&self.data.read()?);
+                campaign(&self.data.read()?)?;
                 Ok(Answer::Yes)
             }
         }
@@ -45,36 +46,36 @@ fn blob(bytes: &[u8]) -> Result<Answer, Failure> {
     let blob = match Blob::from_bytes(bytes) {
         Ok(blob) => blob,
         Err(error) => {
-            anstream::println!("A device would refuse this: {error}.");
+            say!("A device would refuse this: {error}.")?;
             return Ok(Answer::No);
         }
     };
     let hex: String = blob.provenance.iter().map(|byte| format!("{byte:02x}")).collect();
     let serial = if blob.serial.is_empty() { "any sensor" } else { blob.serial.as_str() };
     let ((f_low, f_high), (t_low, t_high)) = (blob.domain.delta_f_uhz, blob.domain.temperature_uc);
-    anstream::println!("Calibration {hex} for {serial}, layout {}, {} bytes", Blob::LAYOUT, bytes.len());
-    anstream::println!(
+    say!("Calibration {hex} for {serial}, layout {}, {} bytes", Blob::LAYOUT, bytes.len())?;
+    say!(
         "  calibrated from {:.3} to {:.3} Hz and from {:.2} to {:.2} °C",
         f_low as f64 * 1e-6,
         f_high as f64 * 1e-6,
         f64::from(t_low) * 1e-6,
         f64::from(t_high) * 1e-6
-    );
+    )?;
     if Signed::split(bytes).is_some_and(|signed| signed.signature.is_some()) {
-        anstream::println!("  signed");
+        say!("  signed")?;
     }
     for term in &blob.terms {
         let name = ALL.iter().find(|about| about.id == term.effect).map_or("unknown effect", |about| about.name);
         let text = print(&term.program, &blob.channels).map(|text| format!(" {text}")).unwrap_or_default();
-        anstream::println!("  effect {name}{text} {:?}", term.parameters.as_slice());
+        say!("  effect {name}{text} {:?}", term.parameters.as_slice())?;
     }
     Ok(match Compensator::load(&blob) {
         Ok(_) => {
-            anstream::println!("A device would take it.");
+            say!("A device would take it.")?;
             Answer::Yes
         }
         Err(error) => {
-            anstream::println!("A device would refuse this: {error}.");
+            say!("A device would refuse this: {error}.")?;
             Answer::No
         }
     })
@@ -111,7 +112,7 @@ impl RunSummary {
     }
 }
 
-fn campaign(campaign: &Campaign) {
+fn campaign(campaign: &Campaign) -> Result<(), Failure> {
     let mut table = Table::new(["run", "kind", "samples", "every s", "hours", "from °C", "to °C", "levels"]);
     for run in campaign.runs.iter().map(|run| RunSummary::of(campaign, run)) {
         table.row([
@@ -125,14 +126,15 @@ fn campaign(campaign: &Campaign) {
             run.levels.to_string(),
         ]);
     }
-    anstream::print!("{table}");
+    say!("{}", table.to_string().trim_end())?;
     if campaign.runs.iter().any(|run| run.has_calendar_time() && run.begins_with_power_on()) {
-        anstream::println!(
+        say!(
             "time_s is a calendar's clock: time since power-on is counted from the first row of each run \
              (a column power_on_s states another)."
-        );
+        )?;
     }
     if !campaign.channels.is_empty() {
-        anstream::println!("Auxiliary channels: {}", campaign.channels.join(", "));
+        say!("Auxiliary channels: {}", campaign.channels.join(", "))?;
     }
+    Ok(())
 }

@@ -3,10 +3,12 @@
 use super::diagnose::diagnosed;
 use crate::data::Data;
 use crate::failure::{Answer, Failure};
+use crate::output::{Force, Kind, Output, make_folder, with_mark};
 use crate::progress::spinner;
 use crate::recordings::{self, Proposed};
 use crate::render;
 use crate::shell::{self, option};
+use crate::terminal::say;
 use clap::Args;
 use firmware_core::effect::about;
 use std::path::{Path, PathBuf};
@@ -40,6 +42,9 @@ pub struct Plan {
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
 
+    #[command(flatten)]
+    force: Force,
+
     /// Prints one JSON object instead of text
     #[arg(long)]
     json: bool,
@@ -56,16 +61,25 @@ impl Plan {
         spinner.finish_and_clear();
         let (planned, best) = planned?;
         let best = best.as_ref();
-        let file = best.zip(self.output.as_ref()).map(|(best, folder)| write(best, folder)).transpose()?;
+        let written = best.zip(self.output.as_ref()).map(|(best, folder)| written(best, folder, self.force));
+        // Which file it is shows only now: where it can't be written, the plan is told all the same.
+        let (file, failure) = match written {
+            Some(Ok(file)) => (Some(file), None),
+            Some(Err(failure)) => (None, Some(failure)),
+            None => (None, None),
+        };
         if self.json {
-            anstream::println!("{:#}", json(&planned, file.as_deref()));
+            say!("{:#}", json(&planned, file.as_deref()))?;
         } else {
-            anstream::println!("{}", render::plan::text(&planned));
-            anstream::println!(
+            say!("{}", render::plan::text(&planned))?;
+            say!(
                 "{}{}",
                 self.next(best, file.as_deref()),
                 best.map_or_else(String::new, |best| lacking(best, &campaign))
-            );
+            )?;
+        }
+        if let Some(failure) = failure {
+            return Err(failure);
         }
         Ok(if best.is_some() { Answer::Yes } else { Answer::No })
     }
@@ -164,14 +178,18 @@ fn column(effect: &str) -> Option<&'static str> {
 
 /// Writes the recording as a scenario file into a folder.
 pub fn write(best: &Proposed, folder: &Path) -> Result<PathBuf, Failure> {
+    written(best, folder, Force::default())
+}
+
+fn written(best: &Proposed, folder: &Path, force: Force) -> Result<PathBuf, Failure> {
     let file = folder.join(format!("{}.toml", best.scenario.name));
-    std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, &error))?;
+    make_folder(folder)?;
     let text = format!(
         "# {:.1} hours of chamber and turntable. No sensor is described here: a rehearsal with `tempco simulate` takes a\n# nominal one, with the [device], [noise] and [effects] that you add.\n\n{}",
         best.recording.hours,
         recordings::text(&best.scenario)
     );
-    std::fs::write(&file, text).map_err(|error| Failure::io(&file, &error))?;
+    Output::in_folder(&file, Kind::Scenario, "-o", force).write(&with_mark(Kind::Scenario, text.as_bytes()))?;
     Ok(file)
 }
 

@@ -2,6 +2,7 @@
 
 use super::change::{Change, ladder};
 use crate::failure::{Answer, Failure};
+use crate::output::{Force, Kind, Output};
 use crate::subject::Subject;
 use clap::Args;
 use std::path::PathBuf;
@@ -21,6 +22,9 @@ pub struct Remove {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
+    #[command(flatten)]
+    force: Force,
+
     /// Prints one JSON object instead of text
     #[arg(long)]
     json: bool,
@@ -28,10 +32,13 @@ pub struct Remove {
 
 impl Remove {
     pub fn run(&self) -> Result<Answer, Failure> {
+        let output = Output::file(&self.output, Kind::Model, "-o", self.force);
+        let output = output.reading(self.subject.files().iter().chain([&self.model]));
+        output.check()?;
         let model = Model::read(&self.model)?;
         let campaign = self.subject.read_for(&model)?;
         let change = Change::of(&model, &campaign)?.scaled(self.subject.scale_factor);
         let effects = change.without(&self.subject.effect())?;
-        ladder(&change, &effects, &self.output, self.json)
+        ladder(&change, &effects, &output, self.json)
     }
 }

@@ -3,6 +3,7 @@
 use crate::failure::{Answer, Failure};
 use crate::shell;
 use crate::table::Table;
+use crate::terminal::say;
 use clap::Args;
 use firmware_sim::seal::{CampaignDigest, HiddenEffect, SealError, SealedTruth, open};
 use std::path::{Path, PathBuf};
@@ -27,9 +28,9 @@ impl Reveal {
         let campaign = self.campaign.clone().unwrap_or_else(|| self.sealed.with_extension("csv"));
         let truth = opened(&self.sealed, &campaign)?;
         if self.json {
-            anstream::println!("{:#}", json(&truth));
+            say!("{:#}", json(&truth))?;
         } else {
-            anstream::println!("{}", words(&truth, &campaign));
+            say!("{}", words(&truth, &campaign))?;
         }
         Ok(Answer::Yes)
     }

@@ -2,14 +2,15 @@
 
 pub mod blind;
 
+use crate::data::seeds;
 use crate::failure::{Answer, Failure};
+use crate::output::{Force, Kind, Output, with_mark};
 use crate::progress::bar;
+use crate::terminal::say;
 use clap::Args;
 use firmware_sim::recording::Recording;
 use firmware_sim::scenario::Scenario;
 use firmware_sim::twin;
-use std::fs::File;
-use std::io::BufWriter;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -22,13 +23,16 @@ pub struct Simulate {
     /// Built-in scenario, or a scenario file; without it the built-in ones are listed
     scenario: Option<String>,
 
-    /// Seed of every random number
-    #[arg(long, default_value_t = 1)]
+    /// Seed of every random number, up to 2⁶³ − 1
+    #[arg(long, default_value_t = 1, value_parser = seeds())]
     seed: u64,
 
     /// Where to write the campaign
     #[arg(short, long, value_name = "FILE", default_value = "campaign.csv")]
     output: PathBuf,
+
+    #[command(flatten)]
+    force: Force,
 
     /// Prints the scenario's text instead of carrying it out: a start for one's own
     #[arg(long)]
@@ -41,36 +45,40 @@ pub struct Simulate {
 impl Simulate {
     pub fn run(&self) -> Result<Answer, Failure> {
         let Some(name) = &self.scenario else {
-            list();
+            list()?;
             return Ok(Answer::Yes);
         };
         let scenario = scenario(name)?;
         if self.print {
-            anstream::println!("{}", scenario.to_toml());
+            say!("{}", scenario.to_toml())?;
             return Ok(Answer::Yes);
         }
+        let output = |path: &Path, kind| Output::file(path, kind, "-o", self.force).reading([&PathBuf::from(name)]);
         if self.blind.blind {
-            anstream::println!("{}", self.blind.measure(&scenario, self.seed, &self.output)?);
+            say!("{}", self.blind.measure(&scenario, self.seed, &self.output, &output)?)?;
             return Ok(Answer::Yes);
         }
+        let output = output(&self.output, Kind::Campaign);
+        output.check()?;
         let recording = simulate(&scenario, self.seed)?;
-        write(&recording, &self.output)?;
-        anstream::println!(
+        output.write(&written(&recording)?)?;
+        say!(
             "{} rows in {} runs written to {}; noise floor {:.2} µg",
             recording.rows(),
             recording.runs.len(),
             self.output.display(),
             recording.noise_floor_ug()
-        );
+        )?;
         Ok(Answer::Yes)
     }
 }
 
-fn list() {
+fn list() -> Result<(), Failure> {
     for name in Scenario::preset_names() {
         let description = Scenario::preset(name).map(|scenario| scenario.description).unwrap_or_default();
-        anstream::println!("{name:14} {description}");
+        say!("{name:14} {description}")?;
     }
+    Ok(())
 }
 
 /// A built-in scenario by name, or a file.
@@ -96,9 +104,9 @@ pub fn simulate(scenario: &Scenario, seed: u64) -> Result<Recording, Failure> {
     recording.map_err(Failure::new)
 }
 
-/// Writes the campaign as one CSV file.
-pub fn write(recording: &Recording, path: &Path) -> Result<(), Failure> {
-    let io = |error: std::io::Error| Failure::io(path, &error);
-    let mut file = BufWriter::new(File::create(path).map_err(io)?);
-    recording.write_csv(&mut file).map_err(io)
+/// The campaign as one CSV file, with the mark by which tempco knows it again.
+pub fn written(recording: &Recording) -> Result<Vec<u8>, Failure> {
+    let mut table = Vec::new();
+    recording.write_csv(&mut table).map_err(Failure::new)?;
+    Ok(with_mark(Kind::Campaign, &table))
 }

@@ -1,11 +1,13 @@
 //! `tempco train DATA -o model.toml`
 
-use crate::data::{Data, HeldOut};
+use crate::data::{Data, HeldOut, restarts as restart_counts, seeds};
 use crate::failure::{Answer, Failure};
+use crate::output::{Force, Kind, Output};
 use crate::progress::Restarts;
 use crate::render;
 use crate::shell::option;
 use crate::table::Table;
+use crate::terminal::say;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -31,6 +33,9 @@ pub struct Train {
     #[arg(short, long, value_name = "FILE", default_value = "model.toml")]
     output: PathBuf,
 
+    #[command(flatten)]
+    force: Force,
+
     /// Prints one JSON object instead of text
     #[arg(long)]
     json: bool,
@@ -44,12 +49,12 @@ pub struct Training {
     #[arg(long, value_enum, default_value_t = MethodName::SecondOrder)]
     method: MethodName,
 
-    /// Trainings from different starts; the best is kept
-    #[arg(long, default_value_t = RESTARTS)]
+    /// Trainings from different starts, 1 to 10000; the best is kept
+    #[arg(long, default_value_t = RESTARTS, value_parser = restart_counts())]
     restarts: usize,
 
-    /// Seed of every random number
-    #[arg(long, default_value_t = TRAINING_SEED)]
+    /// Seed of every random number, up to 2⁶³ − 1
+    #[arg(long, default_value_t = TRAINING_SEED, value_parser = seeds())]
     seed: u64,
 
     /// Scale factor in signal units per reference unit, for a campaign whose reference never varies
@@ -133,16 +138,20 @@ const ROWS_MIN: usize = 100;
 
 impl Train {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let (campaign, settings) = (self.data.read()?, self.training.settings());
+        let output = Output::file(&self.output, Kind::Model, "-o", self.force).reading(&self.data.files);
+        output.check()?;
+        let settings = self.training.settings();
+        settings.check()?;
+        let campaign = self.data.read()?;
         let split = split(&campaign, &self.held_out.choice(), &settings)?;
         let trained = train_with_bar(&campaign, &split, &settings, "training")?;
-        trained.model.write(&self.output)?;
+        output.write(trained.model.to_text().as_bytes())?;
         let comparison = compare(&trained.model, &campaign)?;
         if self.json {
-            anstream::println!("{}", json(&comparison, &trained));
+            say!("{}", json(&comparison, &trained))?;
         } else {
-            anstream::println!("{}", text(&campaign, &split, &trained, &comparison));
-            anstream::println!("Model written to {}", self.output.display());
+            say!("{}", text(&campaign, &split, &trained, &comparison))?;
+            say!("Model written to {}", self.output.display())?;
         }
         Ok(Answer::Yes)
     }

@@ -5,6 +5,7 @@ use crate::failure::{Answer, Failure};
 use crate::link::{AnyLink, PORTS, Port};
 use crate::progress::bar;
 use crate::shell;
+use crate::terminal::{remark, say};
 use clap::Args;
 use protocol::{Blob, Signed};
 use serde::Serialize;
@@ -60,24 +61,24 @@ impl Verify {
         let per_s = parity.samples as f64 / started.elapsed().as_secs_f64();
         if self.json {
             let Parity { samples, identical, .. } = parity;
-            anstream::println!("{:#}", serde_json::json!({ "samples": samples, "identical": identical }));
+            say!("{:#}", serde_json::json!({ "samples": samples, "identical": identical }))?;
         } else {
-            anstream::println!("{parity}");
+            say!("{parity}")?;
             // Beside the answer, which is the same every time.
-            anstream::eprintln!("{per_s:.0} readings/s, there and back");
+            remark!("{per_s:.0} readings/s, there and back");
         }
         Ok(if parity.holds() { Answer::Yes } else { Answer::No })
     }
 
     fn other(&self) -> Result<Answer, Failure> {
         if self.json {
-            anstream::println!("{:#}", serde_json::json!({ "samples": 0, "identical": 0, "other_calibration": true }));
+            say!("{:#}", serde_json::json!({ "samples": 0, "identical": 0, "other_calibration": true }))?;
         } else {
-            anstream::println!(
+            say!(
                 "The instrument holds another calibration than {}. Write this one with  tempco flash {} --to PORT",
                 self.model.display(),
                 shell::path(&self.model)
-            );
+            )?;
         }
         Ok(Answer::No)
     }

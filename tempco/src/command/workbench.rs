@@ -1,7 +1,7 @@
 //! `tempco workbench DATA`
 
 use super::demo::SEED;
-use crate::data::{Data, Reading};
+use crate::data::{Data, Reading, seeds};
 use crate::failure::{Answer, Failure};
 use crate::workbench::{First, Settings, serve};
 use clap::Args;
@@ -23,7 +23,7 @@ pub struct Workbench {
     demo: bool,
 
     /// Seed of the simulated campaign, and of what it hides
-    #[arg(long, default_value_t = SEED)]
+    #[arg(long, default_value_t = SEED, value_parser = seeds())]
     seed: u64,
 
     /// Folder for what is made: models, calibrations, plans, uploaded files

@@ -1,8 +1,10 @@
 //! What to train, and how.
 
+use super::TrainError;
 use super::backprop::{Backprop, Swarm};
 use crate::expression::alike;
 use crate::model::{Model, ModelEffect};
+use protocol::limits::MAX_NAME;
 
 /// How the weights are found.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,6 +120,33 @@ impl EffectChoice {
 }
 
 impl TrainSettings {
+    /// The most restarts that are made; the best of so many is as good as any.
+    pub const MOST_RESTARTS: usize = 10_000;
+    /// The largest seed: numbers in a model file have a sign.
+    pub const LARGEST_SEED: u64 = i64::MAX as u64;
+
+    /// Refuses what no memory, no model file and no device has room for.
+    ///
+    /// # Errors
+    /// The first such number or name.
+    pub fn check(&self) -> Result<(), TrainError> {
+        let Self { restarts, seed, serial, .. } = self;
+        match *restarts {
+            0 => return Err(TrainError::NoRestarts),
+            found if found > Self::MOST_RESTARTS => {
+                return Err(TrainError::TooManyRestarts { found, most: Self::MOST_RESTARTS });
+            }
+            _ => {}
+        }
+        if *seed > Self::LARGEST_SEED {
+            return Err(TrainError::LargeSeed { found: *seed, most: Self::LARGEST_SEED });
+        }
+        if serial.len() > MAX_NAME {
+            return Err(TrainError::LongSerial { found: serial.clone(), most: MAX_NAME });
+        }
+        Ok(())
+    }
+
     /// The default method with 30 restarts, as many as the paper makes.
     #[must_use]
     pub const fn new(seed: u64) -> Self {

@@ -36,9 +36,7 @@ impl<'a> Task<'a> {
         settings: &'a TrainSettings,
         progress: &'a dyn Progress,
     ) -> Result<Self, TrainError> {
-        if settings.restarts == 0 {
-            return Err(TrainError::NoRestarts);
-        }
+        settings.check()?;
         let runs: Vec<(usize, &Run)> =
             split.training.iter().filter_map(|&index| Some((index, campaign.runs.get(index)?))).collect();
         let scale = InputScale::of(runs.iter().map(|(_, run)| *run)).ok_or(TrainError::NoTrainingRuns)?;

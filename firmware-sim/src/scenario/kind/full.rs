@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{CHAMBER_C, LONGEST_S, Order, record_positions};
-use crate::scenario::limit::{Fault, each_within, positive, within};
+use crate::scenario::limit::{Fault, each_within, up_to, within};
 use crate::scenario::position::{self, Position};
 use crate::scenario::programme::Programme;
 use crate::twin::random::Random;
@@ -45,7 +45,7 @@ impl Full {
         within("soak_s", self.soak_s, 0.0, LONGEST_S)?;
         position::check(&self.positions_deg, &[])?;
         within("settle_s", self.settle_s, 0.0, LONGEST_S)?;
-        positive("dwell_s", self.dwell_s)
+        up_to("dwell_s", self.dwell_s, LONGEST_S)
     }
 
     pub(super) fn write(&self, programme: &mut Programme, random: &mut Random) {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{CHAMBER_C, LONGEST_S};
-use crate::scenario::limit::{Fault, each_within, positive, within};
+use crate::scenario::limit::{Fault, each_within, up_to, within};
 use crate::scenario::position::Position;
 use crate::scenario::programme::Programme;
 use crate::twin::random::Random;
@@ -41,8 +41,7 @@ impl PowerCycle {
         each_within("temperatures_c", &self.temperatures_c, CHAMBER_C.0, CHAMBER_C.1)?;
         within("soak_s", self.soak_s, 0.0, LONGEST_S)?;
         each_within("off_s", &self.off_s, 1.0, LONGEST_S)?;
-        positive("on_s", self.on_s)?;
-        within("on_s", self.on_s, 0.0, LONGEST_S)?;
+        up_to("on_s", self.on_s, LONGEST_S)?;
         within("position_deg", self.position_deg, -360.0, 360.0)
     }
 

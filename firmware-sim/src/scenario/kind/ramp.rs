@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{CHAMBER_C, LONGEST_S};
-use crate::scenario::limit::{Fault, each_within, positive, within};
+use crate::scenario::limit::{Fault, each_within, within};
 use crate::scenario::position::Position;
 use crate::scenario::programme::Programme;
 use crate::twin::random::Random;
@@ -49,8 +49,7 @@ impl Ramp {
         each_within("rates_k_per_min", &self.rates_k_per_min, 0.001, 100.0)?;
         within("soak_s", self.soak_s, 0.0, LONGEST_S)?;
         within("hold_s", self.hold_s, 0.0, LONGEST_S)?;
-        within("position_deg", self.position_deg, -360.0, 360.0)?;
-        positive("rates_k_per_min", self.rates_k_per_min[0])
+        within("position_deg", self.position_deg, -360.0, 360.0)
     }
 
     pub(super) fn write(&self, programme: &mut Programme, _random: &mut Random) {

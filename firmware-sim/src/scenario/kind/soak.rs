@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{CHAMBER_C, LONGEST_S};
-use crate::scenario::limit::{Fault, each_within, positive, within};
+use crate::scenario::limit::{Fault, each_within, up_to, within};
 use crate::scenario::position::Position;
 use crate::scenario::programme::Programme;
 use crate::twin::random::Random;
@@ -29,8 +29,7 @@ impl Default for Soak {
 impl Soak {
     pub(super) fn check(&self) -> Result<(), Fault> {
         each_within("temperatures_c", &self.temperatures_c, CHAMBER_C.0, CHAMBER_C.1)?;
-        positive("dwell_s", self.dwell_s)?;
-        within("dwell_s", self.dwell_s, 0.0, LONGEST_S)?;
+        up_to("dwell_s", self.dwell_s, LONGEST_S)?;
         within("position_deg", self.position_deg, -360.0, 360.0)
     }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::LONGEST_S;
-use crate::scenario::limit::{Fault, positive, within};
+use crate::scenario::limit::{Fault, up_to, within};
 use crate::scenario::position::Position;
 use crate::scenario::programme::Programme;
 use crate::twin::random::Random;
@@ -28,8 +28,7 @@ impl Default for Zero {
 
 impl Zero {
     pub(super) fn check(&self) -> Result<(), Fault> {
-        positive("duration_s", self.duration_s)?;
-        within("duration_s", self.duration_s, 0.0, LONGEST_S)?;
+        up_to("duration_s", self.duration_s, LONGEST_S)?;
         within("drift_k_per_h", self.drift_k_per_h, -20.0, 20.0)?;
         within("position_deg", self.position_deg, -360.0, 360.0)
     }

@@ -2,6 +2,7 @@
 
 use super::Target;
 use crate::failure::{Answer, Failure};
+use crate::terminal::say;
 use clap::Args;
 
 /// Asks an instrument who it is.
@@ -19,14 +20,14 @@ impl Identify {
             let answer = serde_json::json!({
                 "serial": identity.serial.as_str(), "blob_layout": identity.blob_layout, "effects": identity.effects,
             });
-            anstream::println!("{answer:#}");
+            say!("{answer:#}")?;
         } else {
             let serial = if identity.serial.is_empty() { "without a serial number" } else { identity.serial.as_str() };
-            anstream::println!(
+            say!(
                 "Instrument {serial}: reads calibrations of layout {}, knows effects up to number {}",
                 identity.blob_layout,
                 identity.effects
-            );
+            )?;
         }
         Ok(Answer::Yes)
     }

@@ -2,6 +2,7 @@
 
 use crate::failure::{Answer, Failure};
 use crate::key::{SecretKey, digits, write_public};
+use crate::terminal::say;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -23,16 +24,23 @@ pub struct Keygen {
 impl Keygen {
     pub fn run(&self) -> Result<Answer, Failure> {
         let file = |ending: &str| PathBuf::from(format!("{}.{ending}", self.output.display()));
+        // Both or none: a new secret key is no use to instruments that hold the old public one.
+        for path in [file("key"), file("pub")] {
+            if path.exists() || path.is_symlink() {
+                return Err(Failure::new(format_args!("{}: there is a key of this name", path.display()))
+                    .help("an existing key is never overwritten: choose another name, as in -o factory-2"));
+            }
+        }
         let key = SecretKey::generate()?;
         key.write(&file("key"))?;
         write_public(&file("pub"), &key.public())?;
         if self.json {
-            anstream::println!("{:#}", serde_json::json!({ "key": digits(&key.public()) }));
+            say!("{:#}", serde_json::json!({ "key": digits(&key.public()) }))?;
         } else {
             let (secret, public) = (file("key"), file("pub"));
-            anstream::println!("Key {}", digits(&key.public()));
-            anstream::println!("  {} signs; keep it secret and safe", secret.display());
-            anstream::println!("  {} goes into instruments: tempco device provision", public.display());
+            say!("Key {}", digits(&key.public()))?;
+            say!("  {} signs; keep it secret and safe", secret.display())?;
+            say!("  {} goes into instruments: tempco device provision", public.display())?;
         }
         Ok(Answer::Yes)
     }

@@ -4,6 +4,7 @@ use super::Target;
 use super::watch::{Pace, watch};
 use crate::failure::{Answer, Failure};
 use crate::render::status::{names, words};
+use crate::terminal::say;
 use clap::Args;
 use firmware_sim::link::{Content, Unasked};
 use protocol::{Reading, Streamed};
@@ -23,7 +24,7 @@ impl Monitor {
     pub fn run(&self) -> Result<Answer, Failure> {
         let json = self.target.json;
         if !json {
-            anstream::println!("{:>10}  {:>12}  status", "time s", "reading g");
+            say!("{:>10}  {:>12}  status", "time s", "reading g")?;
         }
         watch(&self.target, &self.pace, Streamed::Readings, |message| match &message.content {
             Content::Reading(reading) if json => line(message, reading),

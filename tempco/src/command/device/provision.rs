@@ -2,6 +2,8 @@
 
 use crate::failure::{Answer, Failure};
 use crate::key::read_public;
+use crate::output::{Force, Kind, Output};
+use crate::terminal::say;
 use crate::{hex, region};
 use clap::Args;
 use firmware_core::{FactoryKey, IdentityRecord};
@@ -27,17 +29,23 @@ pub struct Provision {
     /// Where to write it: `.hex` gives Intel HEX at the address of `memory.x`, anything else the bare record
     #[arg(short, long, value_name = "FILE", default_value = "identity.hex")]
     output: PathBuf,
+
+    #[command(flatten)]
+    force: Force,
 }
 
 impl Provision {
     pub fn run(&self) -> Result<Answer, Failure> {
-        let record = identity(&self.serial, self.key.as_ref())?.to_bytes();
         let is_hex = self.output.extension().is_some_and(|extension| extension == "hex");
+        let kind = if is_hex { Kind::IdentityHex } else { Kind::Identity };
+        let output = Output::file(&self.output, kind, "-o", self.force).reading(&self.key);
+        output.check()?;
+        let record = identity(&self.serial, self.key.as_ref())?.to_bytes();
         let (address, _) = region::identity()?;
         let bytes = if is_hex { hex::text(&[(address, &record)])?.into_bytes() } else { record.to_vec() };
-        std::fs::write(&self.output, bytes).map_err(|error| Failure::io(&self.output, &error))?;
+        output.write(&bytes)?;
         let place = if is_hex { format!(", for address {address:#010x}") } else { String::new() };
-        anstream::println!("Identity of {} written to {}{place}", self.serial, self.output.display());
+        say!("Identity of {} written to {}{place}", self.serial, self.output.display())?;
         Ok(Answer::Yes)
     }
 }

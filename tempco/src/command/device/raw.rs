@@ -4,6 +4,7 @@ use super::Target;
 use super::watch::{Pace, watch};
 use crate::failure::{Answer, Failure};
 use crate::render::status::names;
+use crate::terminal::say;
 use clap::Args;
 use firmware_sim::link::{Content, Unasked};
 use protocol::{Sample, Streamed};
@@ -23,7 +24,7 @@ impl Raw {
     pub fn run(&self) -> Result<Answer, Failure> {
         let json = self.target.json;
         if !json {
-            anstream::println!("time_s,temperature_c,delta_f_hz,sum_f_hz,faults");
+            say!("time_s,temperature_c,delta_f_hz,sum_f_hz,faults")?;
         }
         watch(&self.target, &self.pace, Streamed::Samples, |message| match &message.content {
             Content::Sample(sample) if json => line(message, sample),

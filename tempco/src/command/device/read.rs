@@ -3,6 +3,8 @@
 use super::Target;
 use crate::failure::{Answer, Failure};
 use crate::key::digits;
+use crate::output::{Force, Kind, Output};
+use crate::terminal::say;
 use clap::Args;
 use protocol::Blob;
 use std::path::PathBuf;
@@ -19,17 +21,22 @@ pub struct Read {
     /// Where to write it
     #[arg(short, long, value_name = "FILE", default_value = "calibration.bin")]
     output: PathBuf,
+
+    #[command(flatten)]
+    force: Force,
 }
 
 impl Read {
     pub fn run(&self) -> Result<Answer, Failure> {
+        let output = Output::file(&self.output, Kind::Calibration, "-o", self.force);
+        output.check()?;
         let bytes = self.target.port.connect()?.read_calibration()?;
         let name = digits(&Blob::from_bytes(&bytes)?.provenance);
-        std::fs::write(&self.output, &bytes).map_err(|error| Failure::io(&self.output, &error))?;
+        output.write(&bytes)?;
         if self.target.json {
-            anstream::println!("{:#}", serde_json::json!({ "calibration": name, "bytes": bytes.len() }));
+            say!("{:#}", serde_json::json!({ "calibration": name, "bytes": bytes.len() }))?;
         } else {
-            anstream::println!("Calibration {name}, {} bytes, written to {}", bytes.len(), self.output.display());
+            say!("Calibration {name}, {} bytes, written to {}", bytes.len(), self.output.display())?;
         }
         Ok(Answer::Yes)
     }

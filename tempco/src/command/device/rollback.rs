@@ -4,6 +4,7 @@ use super::Target;
 use crate::failure::{Answer, Failure};
 use crate::key::digits;
 use crate::progress::spinner;
+use crate::terminal::say;
 use clap::Args;
 use firmware_sim::link::LinkError;
 
@@ -31,11 +32,11 @@ impl Rollback {
         let name = link.state()?.provenance.map(|provenance| digits(&provenance));
         let shown = name.as_deref().unwrap_or("none");
         if self.target.json {
-            anstream::println!("{:#}", serde_json::json!({ "calibration": name, "refusal": refusal }));
+            say!("{:#}", serde_json::json!({ "calibration": name, "refusal": refusal }))?;
         } else if let Some(refusal) = &refusal {
-            anstream::println!("The instrument refused: {refusal}. In use: {shown}");
+            say!("The instrument refused: {refusal}. In use: {shown}")?;
         } else {
-            anstream::println!("Back at calibration {shown}.");
+            say!("Back at calibration {shown}.")?;
         }
         Ok(if refusal.is_none() { Answer::Yes } else { Answer::No })
     }

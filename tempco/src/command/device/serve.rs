@@ -6,7 +6,10 @@ use self::line::Listener;
 use super::provision::identity;
 use super::watch::interrupted;
 use crate::command::simulate::{scenario, simulate};
+use crate::data::seeds;
 use crate::failure::{Answer, Failure};
+use crate::output::{Kind, Output};
+use crate::terminal::say;
 use clap::Args;
 use firmware_sim::link::Transport;
 use firmware_sim::virtual_bench::VirtualBench;
@@ -49,20 +52,22 @@ pub struct Serve {
     #[arg(long, default_value = "clean")]
     scenario: String,
 
-    /// Seed of every random number
-    #[arg(long, default_value_t = 1)]
+    /// Seed of every random number, up to 2⁶³ − 1
+    #[arg(long, default_value_t = 1, value_parser = seeds())]
     seed: u64,
 }
 
 impl Serve {
     pub fn run(&self) -> Result<Answer, Failure> {
+        let kept_in = self.flash.as_deref().map(|path| Output::own(path, Kind::Flash));
+        kept_in.as_ref().map_or(Ok(()), Output::check)?;
         let enough = interrupted()?;
         let identity = identity(&self.serial, self.key.as_ref())?;
         let flash = self.flash.as_deref().map_or_else(|| Ok(VirtualFlash::new()), read)?;
         let mut bench = VirtualBench::new(simulate(&scenario(&self.scenario)?, self.seed)?);
         let mut instrument = VirtualLine::with(identity, flash);
         let mut listener = if self.pty { Listener::terminal()? } else { Listener::socket(&self.tcp)? };
-        anstream::println!("Instrument {} at {}; Ctrl-C switches it off", self.serial, listener.name());
+        say!("Instrument {} at {}; Ctrl-C switches it off", self.serial, listener.name())?;
         let (clock, mut kept) = (Clock::start(), instrument.flash_mut().steps());
         while !enough.load(Ordering::Relaxed) {
             let time_us = clock.now_us();
@@ -74,11 +79,12 @@ impl Serve {
             while let Ok(Some(byte)) = instrument.receive() {
                 answer.push(byte);
             }
-            listener.send(&answer);
-            if let Some(path) = self.flash.as_deref().filter(|_| instrument.flash_mut().steps() != kept) {
+            // Before the answer, which may say that it is kept for good.
+            if let Some(file) = kept_in.as_ref().filter(|_| instrument.flash_mut().steps() != kept) {
                 kept = instrument.flash_mut().steps();
-                std::fs::write(path, instrument.flash_mut().bytes()).map_err(|error| Failure::io(path, &error))?;
+                file.write(instrument.flash_mut().bytes())?;
             }
+            listener.send(&answer);
         }
         Ok(Answer::Yes)
     }

@@ -4,6 +4,7 @@ use super::Target;
 use crate::failure::{Answer, Failure};
 use crate::key::digits;
 use crate::render::status::{names, words};
+use crate::terminal::say;
 use clap::Args;
 use protocol::{InstrumentState, Source, StorageState};
 
@@ -22,9 +23,9 @@ impl Status {
         let mut link = self.target.port.connect()?;
         let (state, storage) = (link.state()?, link.storage()?);
         if self.target.json {
-            anstream::println!("{:#}", json(&state, &storage));
+            say!("{:#}", json(&state, &storage))?;
         } else {
-            anstream::print!("{}", text(&state, &storage));
+            say!("{}", text(&state, &storage).trim_end())?;
         }
         Ok(if storage.source == Source::Nothing { Answer::No } else { Answer::Yes })
     }

@@ -3,10 +3,10 @@
 use super::Target;
 use crate::failure::{Answer, Failure};
 use crate::link::AnyLink;
+use crate::terminal::{remark, say};
 use clap::Args;
 use firmware_sim::link::Unasked;
 use protocol::Streamed;
-use std::io::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -44,22 +44,22 @@ pub fn watch(
             if enough.load(Ordering::Relaxed) {
                 break;
             }
-            anstream::eprintln!("nothing came for {} s; beginning again", patience.as_secs());
+            remark!("nothing came for {} s; beginning again", patience.as_secs());
             link.begin();
             link.stream(what, pace.every_ms)?;
             expected = 0;
             continue;
         };
         if message.number > expected {
-            anstream::eprintln!("{} lost on the way", message.number - expected);
+            remark!("{} lost on the way", message.number - expected);
         }
         expected = message.number.wrapping_add(1);
         seen += 1;
         let text = print(&message);
-        // Whoever reads along shall see each line at once; a reader that went away has had enough.
-        let mut out = anstream::stdout().lock();
-        if writeln!(out, "{text}").and_then(|()| out.flush()).is_err() {
-            break;
+        if let Err(failure) = say!("{text}") {
+            link.stop()?;
+            // A reader that went away has had enough.
+            return if failure.is_nobody_reads() { Ok(Answer::Yes) } else { Err(failure) };
         }
     }
     link.stop()?;

@@ -3,6 +3,7 @@
 use super::Reproduce;
 use crate::command::simulate;
 use crate::failure::Failure;
+use crate::output::Kind;
 use crate::progress::{Restarts, bar};
 use firmware_sim::recording::Recording;
 use firmware_sim::scenario::Scenario;
@@ -55,6 +56,15 @@ struct Taught {
     trained: Vec<(Column, Trained)>,
 }
 
+/// What is written of them.
+pub fn files() -> impl Iterator<Item = String> {
+    SCENARIOS.into_iter().map(file)
+}
+
+fn file(scenario: &str) -> String {
+    format!("{scenario}.csv")
+}
+
 /// Judges every method on every campaign.
 pub fn judge(command: &Reproduce, files: &mut Vec<PathBuf>) -> Result<Vec<Judged>, Failure> {
     let mut taught: Vec<Taught> = Vec::new();
@@ -62,8 +72,9 @@ pub fn judge(command: &Reproduce, files: &mut Vec<PathBuf>) -> Result<Vec<Judged
     for name in SCENARIOS {
         let scenario = Scenario::preset(name).ok_or_else(|| Failure::new(format_args!("no scenario named {name}")))?;
         let recording = simulate::simulate(&scenario, command.seed)?;
-        let path = command.path(format!("{name}.csv"));
-        simulate::write(&recording, &path)?;
+        let file = file(name);
+        command.place(&file, Kind::Campaign).write(&simulate::written(&recording)?)?;
+        let path = command.path(file);
         let campaign = Campaign::read(std::slice::from_ref(&path), &ReadOptions::default())?;
         files.push(path);
         let split = campaign.split(&HoldOut::Named(TEST_RUNS.map(str::to_owned).to_vec()))?;

@@ -1,7 +1,8 @@
 //! `--blind`: hides effects in a campaign and puts the truth into an envelope beside it.
 
-use super::{simulate, write};
+use super::{simulate, written};
 use crate::failure::Failure;
+use crate::output::{Kind, Output, Prepared};
 use crate::progress::spinner;
 use crate::shell;
 use clap::Args;
@@ -57,22 +58,31 @@ impl Blind {
     pub const ONE: Self = Self { blind: true, effects_at_most: Some(1), nothing_possible: false, outside: false };
 
     /// Measures the blinded campaign, and writes it and its envelope.
-    pub fn measure(&self, scenario: &Scenario, seed: u64, output: &Path) -> Result<Sealed, Failure> {
+    pub fn measure(
+        &self,
+        scenario: &Scenario,
+        seed: u64,
+        output: &Path,
+        place: &dyn Fn(&Path, Kind) -> Output,
+    ) -> Result<Sealed, Failure> {
         let envelope = output.with_extension("sealed");
         if envelope == *output {
             return Err(Failure::new(format_args!("{}: the campaign would overwrite its own truth", output.display()))
                 .help("name the campaign something else than .sealed, as in -o campaign.csv"));
         }
+        let (campaign, sealed) = (place(output, Kind::Campaign), place(&envelope, Kind::Seal));
+        campaign.check()?;
+        sealed.check()?;
         let spinner = spinner("choosing what to hide");
         let blinded = scenario.blinded(seed, &self.options());
         spinner.finish_and_clear();
         let (blinded, truth) = blinded.map_err(failure)?;
         let recording = simulate(&blinded, seed)?;
-        write(&recording, output)?;
-        let io = |path: &Path, error: &std::io::Error| Failure::io(path, error);
-        let campaign = std::fs::read(output).map_err(|error| io(output, &error))?;
-        let sealed = seal(&truth, &CampaignDigest::of([campaign]));
-        std::fs::write(&envelope, sealed).map_err(|error| io(&envelope, &error))?;
+        let table = written(&recording)?;
+        let truth_sealed = seal(&truth, &CampaignDigest::of([&table]));
+        // One without the other is worth nothing: they appear together.
+        let both = [campaign.prepare(&table)?, sealed.prepare(truth_sealed.as_bytes())?];
+        both.into_iter().try_for_each(Prepared::place)?;
         Ok(Sealed {
             rows: recording.rows(),
             runs: recording.runs.len(),
