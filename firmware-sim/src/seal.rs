@@ -72,8 +72,12 @@ pub fn seal(truth: &SealedTruth, campaign: &CampaignDigest) -> String {
     // Numbers, strings and tables only: serialising cannot fail.
     let plain = toml::to_string(truth).unwrap_or_default().into_bytes();
     let key = truth.blind_seed ^ u64::from_le_bytes(first_eight(&campaign.0));
-    let check = to_hex(&Sha256::digest(&plain));
-    let hex = to_hex(&masked(&plain, key));
+    envelope(&plain, key, campaign)
+}
+
+fn envelope(plain: &[u8], key: u64, campaign: &CampaignDigest) -> String {
+    let check = to_hex(&Sha256::digest(plain));
+    let hex = to_hex(&masked(plain, key));
     let body: Vec<&str> = hex.as_bytes().chunks(HEX_PER_LINE).filter_map(|line| str::from_utf8(line).ok()).collect();
     format!("{TITLE}\n{HINT}\ncampaign {campaign}\nkey {key:016x}\ncheck {check}\n\n{}\n", body.join("\n"))
 }
@@ -91,7 +95,8 @@ pub fn open(text: &str, campaign: &CampaignDigest) -> Result<SealedTruth, SealEr
         lines.find_map(|line| line.strip_prefix(name)?.strip_prefix(' ')).ok_or(SealError::Incomplete { missing: name })
     };
     let (sealed_for, key, check) = (field("campaign")?, field("key")?, field("check")?);
-    let key = u64::from_str_radix(key, 16).map_err(|_| SealError::Damaged)?;
+    let key =
+        from_hex(key).and_then(|bytes| bytes.try_into().ok()).map(u64::from_be_bytes).ok_or(SealError::Damaged)?;
     let body: String = lines.collect();
     let plain = masked(&from_hex(&body).ok_or(SealError::Damaged)?, key);
     if to_hex(&Sha256::digest(&plain)) != check {
@@ -159,7 +164,9 @@ fn to_hex(bytes: &[u8]) -> String {
 }
 
 fn from_hex(text: &str) -> Option<Vec<u8>> {
-    if !text.is_ascii() || !text.len().is_multiple_of(2) {
+    // As `to_hex` writes it and no other way: `from_str_radix` alone takes "+f" and "0F" for "0f".
+    let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+    if !text.bytes().all(is_digit) || !text.len().is_multiple_of(2) {
         return None;
     }
     (0..text.len()).step_by(2).map(|i| u8::from_str_radix(&text[i..i + 2], 16).ok()).collect()
@@ -169,7 +176,7 @@ fn from_hex(text: &str) -> Option<Vec<u8>> {
 mod tests {
     use super::*;
 
-    fn envelope() -> (SealedTruth, CampaignDigest, String) {
+    fn sealed() -> (SealedTruth, CampaignDigest, String) {
         let mut scenario = Scenario::preset("clean").unwrap();
         scenario.effects.switch_on("lock-in", 1.0);
         let hidden = vec![HiddenEffect { name: "lock-in".into(), influence_ug: 300.0, times_noise: 50.0 }];
@@ -181,14 +188,14 @@ mod tests {
 
     #[test]
     fn what_is_sealed_comes_out_again_and_cannot_be_read_by_eye() {
-        let (truth, campaign, text) = envelope();
+        let (truth, campaign, text) = sealed();
         assert_eq!(open(&text, &campaign), Ok(truth));
         assert!(!text.contains("lock-in") && text.contains("tempco reveal"));
     }
 
     #[test]
     fn another_campaign_is_noticed() {
-        let (_, _, text) = envelope();
+        let (_, _, text) = sealed();
         let other = CampaignDigest::of([b"run,kind,\n"]);
         assert!(matches!(open(&text, &other), Err(SealError::OtherCampaign { .. })));
         assert_ne!(CampaignDigest::of([b"a", b"b"].map(|file| &file[..])), CampaignDigest::of([&b"ab"[..]]));
@@ -196,12 +203,31 @@ mod tests {
 
     #[test]
     fn every_changed_character_is_noticed() {
-        let (_, campaign, text) = envelope();
+        let (_, campaign, text) = sealed();
         let begin = text.find("\ncampaign ").unwrap() + "\ncampaign ".len();
         for index in (begin..text.len()).step_by(7).filter(|i| text.as_bytes()[*i].is_ascii_hexdigit()) {
             let mut bytes = text.clone().into_bytes();
-            bytes[index] = if bytes[index] == b'0' { b'1' } else { b'0' };
-            assert!(open(&String::from_utf8(bytes).unwrap(), &campaign).is_err(), "character {index}");
+            for other in [b'0', b'1', b'+', b'F'] {
+                let before = std::mem::replace(&mut bytes[index], other);
+                let opened = open(str::from_utf8(&bytes).unwrap(), &campaign);
+                assert!(before == other || opened.is_err(), "character {index}, {}", char::from(other));
+                bytes[index] = before;
+            }
+        }
+    }
+
+    #[test]
+    fn surplus_behind_what_was_sealed_is_noticed() {
+        let (truth, campaign, text) = sealed();
+        for surplus in ["00", "0", "0\n0", "\n\nff\n", "\nkey 0", " "] {
+            assert_eq!(open(&format!("{text}{surplus}"), &campaign), Err(SealError::Damaged), "{surplus:?}");
+        }
+        // Also where whoever added it computed the checksum anew.
+        let plain = toml::to_string(&truth).unwrap();
+        assert_eq!(open(&envelope(plain.as_bytes(), 7, &campaign), &campaign), Ok(truth));
+        for surplus in ["\0", "x", "[x]\n", "blind_seed = 1\n"] {
+            let opened = open(&envelope(format!("{plain}{surplus}").as_bytes(), 7, &campaign), &campaign);
+            assert!(matches!(opened, Err(SealError::OtherVersion { .. })), "{surplus:?}: {opened:?}");
         }
     }
 
