@@ -205,3 +205,95 @@ impl Blob {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn example() -> Blob {
+        Blob {
+            serial: String::try_from("SN-1").expect("short"),
+            provenance: *b"12345678",
+            proof: 7,
+            scaling: Scaling {
+                delta_f_zero_uhz: 1,
+                delta_f_gain_per_hz: 2.0,
+                temperature_zero_uc: 3,
+                temperature_gain_per_c: 4.0,
+                line_g: [5.0; 4],
+                output_g: 6.0,
+            },
+            weights: Weights::ZERO,
+            domain: Domain { delta_f_uhz: (-1, 1), temperature_uc: (-2, 2) },
+            timing: Timing { max_gap_us: 9 },
+            channels: Vec::new(),
+            terms: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn header_payload_and_checksum_stand_where_the_layout_says() {
+        let mut buffer = [0xAA; MAX_BLOB];
+        let bytes = example().to_bytes(&mut buffer).expect("it fits");
+        let (header, rest) = bytes.split_first_chunk::<8>().expect("a header");
+        let (payload, checksum) = rest.split_last_chunk::<4>().expect("a checksum");
+        assert_eq!(header[..6], *b"TPCO\x02\x00");
+        assert_eq!(u16::from_le_bytes([header[6], header[7]]), payload.len() as u16);
+        assert_eq!(postcard::from_bytes(payload), Ok(example()));
+        assert_eq!(u32::from_le_bytes(*checksum), crc32(&bytes[..8 + payload.len()]));
+    }
+
+    #[test]
+    fn what_was_written_is_read_also_with_something_behind_it() {
+        let mut buffer = [0xFF; MAX_BLOB];
+        let length = example().to_bytes(&mut buffer).expect("it fits").len();
+        assert_eq!(Blob::from_bytes(&buffer[..length]), Ok(example()));
+        assert_eq!(Blob::from_bytes(&buffer), Ok(example()));
+        assert_eq!(Blob::stored_length(&buffer), Some(length));
+    }
+
+    #[test]
+    fn what_is_missing_is_counted() {
+        let mut buffer = [0; MAX_BLOB];
+        let bytes = example().to_bytes(&mut buffer).expect("it fits");
+        for found in 0..bytes.len() {
+            let expected = if found < 8 { 12 } else { bytes.len() };
+            assert_eq!(Blob::from_bytes(&bytes[..found]), Err(BlobError::Truncated { found, expected }));
+        }
+    }
+
+    #[test]
+    fn a_length_is_believed_behind_the_magic_only_and_up_to_what_a_device_stores() {
+        let header = |magic: &[u8; 4], payload: u16| {
+            let mut header = [0; 8];
+            header[..4].copy_from_slice(magic);
+            header[6..].copy_from_slice(&payload.to_le_bytes());
+            Blob::stored_length(&header)
+        };
+        assert_eq!(header(b"TPCO", 0), Some(12));
+        assert_eq!(header(b"TPCO", MAX_BLOB as u16 - 12), Some(MAX_BLOB));
+        assert_eq!(header(b"TPCO", MAX_BLOB as u16 - 11), None);
+        assert_eq!(header(b"TPCQ", 0), None);
+    }
+
+    #[test]
+    fn each_damage_has_its_name() {
+        let mut buffer = [0; MAX_BLOB];
+        let length = example().to_bytes(&mut buffer).expect("it fits").len();
+        let read = |change: fn(&mut [u8])| {
+            let mut bytes = buffer;
+            change(&mut bytes);
+            let end = usize::from(u16::from_le_bytes([bytes[6], bytes[7]])) + 8;
+            (Blob::from_bytes(&bytes), bytes, end)
+        };
+        assert_eq!(read(|bytes| bytes[0] = b'X').0, Err(BlobError::NotABlob));
+        assert_eq!(read(|bytes| bytes[4] = 3).0, Err(BlobError::Layout { found: 3, supported: 2 }));
+        let (changed, bytes, end) = read(|bytes| bytes[20] ^= 1);
+        let stored = u32::from_le_bytes(*buffer[..length].last_chunk().expect("a checksum"));
+        assert_eq!(changed, Err(BlobError::Checksum { computed: crc32(&bytes[..end]), stored }));
+        let (_, mut surplus, end) = read(|bytes| bytes[6] += 1);
+        let checksum = crc32(&surplus[..end]).to_le_bytes();
+        surplus[end..end + 4].copy_from_slice(&checksum);
+        assert_eq!(Blob::from_bytes(&surplus), Err(BlobError::Payload), "a byte too many under a right checksum");
+    }
+}

@@ -164,3 +164,97 @@ impl Decoder {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FULL: [u8; 254] = [7; 254];
+
+    /// Bodies and how they stand on the line.
+    fn table() -> [(&'static [u8], &'static [&'static [u8]]); 8] {
+        [
+            (&[], &[&[1, 0]]),
+            (&[0], &[&[1, 1, 0]]),
+            (&[0, 0], &[&[1, 1, 1, 0]]),
+            (&[0x11, 0x22, 0, 0x33], &[&[3, 0x11, 0x22, 2, 0x33, 0]]),
+            (&[0x11, 0], &[&[2, 0x11, 1, 0]]),
+            (&[7; 253], &[&[254], &[7; 253], &[0]]),
+            (&FULL, &[&[255], &FULL, &[1, 0]]),
+            (&[7; 255], &[&[255], &FULL, &[2, 7, 0]]),
+        ]
+    }
+
+    #[test]
+    fn zeros_are_replaced_and_come_back() {
+        for (body, line) in table() {
+            let stuffed = stuff(body).expect("it fits");
+            assert!(stuffed.iter().eq(line.iter().copied().flatten()), "{body:?} became {stuffed:?}");
+            let mut decoder = Decoder::new();
+            stuffed[..stuffed.len() - 1].iter().for_each(|byte| decoder.unstuff(*byte));
+            assert!(decoder.body == *body && decoder.left == 0, "{stuffed:?} became {:?}", decoder.body);
+        }
+    }
+
+    fn received<T: DeserializeOwned>(bytes: &[u8]) -> Option<Result<Envelope<T>, FrameError>> {
+        let mut decoder = Decoder::new();
+        bytes.iter().find_map(|byte| decoder.push(*byte))
+    }
+
+    #[test]
+    fn messages_come_through_up_to_the_longest() {
+        for length in [0, 1, 128, 249] {
+            let message =
+                Envelope { sequence: 300, body: (length as u8, Vec::<u8, 256>::from_iter((0..length).map(|_| 0))) };
+            let line = encode_frame(&message);
+            // Sequence, the number and the length of a list take 2 + 1 + (1 or 2) bytes, the checksum 4.
+            if length < 249 {
+                assert_eq!(received(&line.expect("it fits")), Some(Ok(message)));
+            } else {
+                assert_eq!(line, Err(FrameError::TooLong));
+            }
+        }
+        let request = Envelope { sequence: 1, body: Request::ReadBlob { offset: 2 } };
+        assert_eq!(received(&encode_request(&request).expect("it fits")), Some(Ok(request)));
+        let response = Envelope { sequence: 1, body: Response::Done };
+        assert_eq!(received(&encode_response(&response).expect("it fits")), Some(Ok(response)));
+    }
+
+    #[test]
+    fn a_frame_of_another_encoder_may_end_with_a_full_group() {
+        let mut body = [7; 254];
+        let checksum = crc32(&body[..250]).to_le_bytes();
+        body[250..].copy_from_slice(&checksum);
+        assert!(!checksum.contains(&0));
+        let mut decoder = Decoder::new();
+        for byte in [0xFF].iter().chain(&body) {
+            assert_eq!(decoder.push::<u8>(*byte), None);
+        }
+        // 250 bytes of 7: the number 7, and a body that is longer than this message.
+        assert_eq!(decoder.push::<u8>(0), Some(Err(FrameError::UnknownMessage { sequence: 7 })));
+    }
+
+    #[test]
+    fn idle_zeros_are_nothing_and_broken_frames_are_named() {
+        let table: [(&[u8], Option<FrameError>); 6] = [
+            (&[0, 0, 0], None),
+            (&[1, 0], Some(FrameError::Malformed)),
+            (&[2, 0], Some(FrameError::Malformed)),
+            (&[0xFF, 0], Some(FrameError::Malformed)),
+            (&[6, 1, 2, 3, 4, 5, 0], Some(FrameError::Checksum)),
+            (&[6, 1, 2, 3, 0], Some(FrameError::Malformed)),
+        ];
+        for (bytes, error) in table {
+            assert_eq!(received::<Request>(bytes), error.map(Err), "{bytes:?}");
+        }
+        let mut long = [1; 300];
+        long[299] = 0;
+        assert_eq!(received::<Request>(&long), Some(Err(FrameError::TooLong)));
+    }
+
+    #[test]
+    fn a_byte_too_many_behind_a_message_makes_another_message() {
+        let line = encode_frame(&Envelope { sequence: 9, body: (Request::Measure, 1_u8) }).expect("it fits");
+        assert_eq!(received::<Request>(&line), Some(Err(FrameError::UnknownMessage { sequence: 9 })));
+    }
+}

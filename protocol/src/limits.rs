@@ -26,3 +26,13 @@ pub const MAX_CHUNK: usize = 128;
 pub const MAX_FRAME: usize = 256;
 /// Bytes of one frame on the line: stuffed, with its final zero.
 pub const MAX_LINE: usize = MAX_FRAME + MAX_FRAME / 254 + 2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_derived_is_what_the_documents_say() {
+        assert_eq!((WEIGHTS, MAX_STORED, MAX_LINE), (41, 1092, 259));
+    }
+}

@@ -62,3 +62,21 @@ impl Reading {
             && self.acceleration_g.to_bits() == other.acceleration_g.to_bits()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readings_differ_in_any_field_and_a_nan_is_like_itself() {
+        let reading = Reading { time_us: 1, acceleration_g: 0.5, status: Status::STALE };
+        assert!(reading.same_bits(&reading));
+        assert!(!reading.same_bits(&Reading { time_us: 2, ..reading }));
+        assert!(!reading.same_bits(&Reading { acceleration_g: 0.500_000_06, ..reading }));
+        assert!(!reading.same_bits(&Reading { status: Status::empty(), ..reading }));
+        let none = Reading::none(1, Status::STALE);
+        assert!(none.same_bits(&none) && !none.same_bits(&reading));
+        let zero = Reading { acceleration_g: 0.0, ..reading };
+        assert!(!zero.same_bits(&Reading { acceleration_g: -0.0, ..reading }));
+    }
+}

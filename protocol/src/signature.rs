@@ -71,4 +71,24 @@ mod tests {
         assert_eq!(Signed::split(&signed[1..]), None);
         assert_eq!(Signed::split(&BLOB[..13]), None);
     }
+
+    #[test]
+    fn the_length_is_the_blobs_and_that_of_its_signature() {
+        assert_eq!(Signed { blob: &BLOB, signature: None }.length(), 14);
+        assert_eq!(Signed { blob: &BLOB, signature: Some(&[7; 64]) }.length(), 14 + 68);
+    }
+
+    #[test]
+    fn a_blob_is_intact_until_any_bit_of_it_changes() {
+        let mut blob = BLOB;
+        let checksum = super::crc32(&blob[..10]).to_le_bytes();
+        blob[10..].copy_from_slice(&checksum);
+        let is_intact = |blob: &[u8]| Signed { blob, signature: None }.is_intact();
+        assert!(is_intact(&blob) && !is_intact(&BLOB) && !is_intact(&blob[..3]));
+        for bit in 0..14 * 8 {
+            let mut changed = blob;
+            changed[bit / 8] ^= 1 << (bit % 8);
+            assert!(!is_intact(&changed), "bit {bit}");
+        }
+    }
 }

@@ -26,4 +26,11 @@ mod tests {
         assert_ne!(unlock_answer(1, "SN-1"), unlock_answer(2, "SN-1"));
         assert_ne!(unlock_answer(1, "SN-1"), unlock_answer(1, "SN-2"));
     }
+
+    #[test]
+    fn a_serial_number_counts_as_far_as_a_device_stores_it() {
+        let (stored, longer) = ("123456789012345678901234", "1234567890123456789012345");
+        assert_eq!(unlock_answer(5, longer), unlock_answer(5, stored));
+        assert_ne!(unlock_answer(5, stored), unlock_answer(5, &stored[..23]));
+    }
 }
