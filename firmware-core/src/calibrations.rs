@@ -79,6 +79,9 @@ impl<F: NorFlash> Calibrations<F> {
         if offset > self.incoming.len() {
             return Err(Refusal::Offset(u16::try_from(self.incoming.len()).unwrap_or(u16::MAX)));
         }
+        if offset.saturating_add(bytes.len()) > self.incoming.capacity() {
+            return Err(Refusal::Unusable);
+        }
         self.incoming.truncate(offset);
         self.incoming.extend_from_slice(bytes).map_err(|_| Refusal::Unusable)
     }
@@ -168,10 +171,11 @@ impl<F: NorFlash> Calibrations<F> {
 
     /// The calibration in a slot, if it is whole and passes every check. Takes the place of what was being written.
     fn look(&mut self, slot: Slot) -> Result<(Stored, Calibration), Refusal> {
-        let stored = self.storage.read(slot, &mut self.incoming).ok_or(Refusal::NoCalibration)?;
-        let calibration = check(&self.incoming, &self.identity);
+        let read = self.storage.read(slot, &mut self.incoming).ok_or(Refusal::NoCalibration);
+        let found = read.and_then(|stored| Ok((stored, check(&self.incoming, &self.identity)?)));
+        // Also where nothing sound was read: else that would count as written by the host.
         self.incoming.clear();
-        Ok((stored, calibration?))
+        found
     }
 }
 

@@ -21,7 +21,7 @@ const FINISHED: u16 = 1 << 0;
 const OVERFLOW: u16 = 0b11 << 1;
 
 /// A dual reciprocal counter on an SPI bus.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Counter<SPI> {
     device: SPI,
     reference_hz: u32,

@@ -7,7 +7,7 @@ use embedded_hal::spi::SpiDevice;
 use protocol::{Sample, Status};
 
 /// The two sensors of the instrument.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Sensors<SPI, I2C> {
     /// Frequencies of the resonators.
     pub counter: Counter<SPI>,

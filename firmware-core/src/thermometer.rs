@@ -22,7 +22,7 @@ const RANGE_UC: core::ops::RangeInclusive<i32> = -60_000_000..=155_000_000;
 const STUCK_AFTER_US: u64 = 5_000_000;
 
 /// A TMP117 on an I²C bus.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Thermometer<I2C> {
     bus: I2C,
     address: SevenBitAddress,
