@@ -139,6 +139,22 @@ fn a_sound_checksum_over_nonsense_is_refused() {
 }
 
 #[test]
+fn surplus_bytes_in_a_sealed_payload_are_refused() {
+    for surplus in [&[0][..], &[0xFF; 7], b"TPCO"] {
+        let mut bytes = example::blob_bytes();
+        let length = u16::from_le_bytes([bytes[6], bytes[7]]) + surplus.len() as u16;
+        bytes[6..8].copy_from_slice(&length.to_le_bytes());
+        let checksum_at = bytes.len() - 4;
+        bytes.splice(checksum_at..checksum_at, surplus.iter().copied());
+        let bytes = sealed(bytes);
+        assert_eq!(Blob::from_bytes(&bytes), Err(BlobError::Payload), "{surplus:?}");
+        let mut bench = Bench::new();
+        assert_eq!(bench.upload(&bytes), Err(LinkError::Refused(Refusal::Unusable)));
+        bench.assert_the_old_calibration_runs_on();
+    }
+}
+
+#[test]
 fn a_blob_for_another_sensor_is_refused_and_one_for_any_sensor_is_not() {
     let mut bench = Bench::new();
     let mut blob = example::blob();
