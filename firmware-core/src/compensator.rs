@@ -299,3 +299,140 @@ fn check_numbers(blob: &Blob) -> Result<(), LoadError> {
         .chain(blob.terms.iter().flat_map(|term| term.parameters.iter().copied()));
     if numbers.all(f32::is_finite) && gains.iter().all(|gain| *gain > 0.0) { Ok(()) } else { Err(LoadError::Number) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use heapless::{String, Vec};
+    use protocol::{Timing, Weights};
+
+    const HZ: i64 = 1_000_000;
+
+    /// 1 g per Hz and 0.5 g per °C, a network that is zero, and these effects with their first coefficients.
+    fn blob(terms: &[(u16, f32)]) -> Blob {
+        let term = |&(effect, value): &(u16, f32)| Term {
+            effect,
+            channel: 0,
+            parameters: Vec::from_slice(&[value]).expect("one"),
+            program: Vec::new(),
+        };
+        Blob {
+            serial: String::new(),
+            provenance: [0; 8],
+            proof: Network::new(&Weights::ZERO).proof().expect("zeros"),
+            scaling: Scaling {
+                delta_f_zero_uhz: 0,
+                delta_f_gain_per_hz: 1.0,
+                temperature_zero_uc: 0,
+                temperature_gain_per_c: 1.0,
+                line_g: [0.0, 1.0, 0.5, 0.0],
+                output_g: 1.0,
+            },
+            weights: Weights::ZERO,
+            domain: Domain { delta_f_uhz: (-4 * HZ, 4 * HZ), temperature_uc: (-20_000_000, 20_000_000) },
+            timing: Timing { max_gap_us: u32::MAX },
+            channels: Vec::new(),
+            terms: terms.iter().map(term).collect(),
+        }
+    }
+
+    fn ready(terms: &[(u16, f32)]) -> Compensator<f32> {
+        Compensator::load(&blob(terms)).expect("a sound one")
+    }
+
+    fn sample(second: u64, delta_f_uhz: i64, temperature_uc: i32) -> Sample {
+        Sample::from_difference(second * 1_000_000, delta_f_uhz, temperature_uc)
+    }
+
+    fn read(compensator: &mut Compensator<f32>, sample: &Sample) -> (f32, Status) {
+        let Reading { acceleration_g, status, .. } = compensator.compensate(sample);
+        (acceleration_g, status)
+    }
+
+    #[test]
+    fn the_line_is_read_and_every_flag_passed_on() {
+        let mut compensator = ready(&[]);
+        assert_eq!(read(&mut compensator, &sample(0, 2 * HZ, 1_000_000)), (2.5, Status::empty()));
+        let stale = Sample { faults: Status::STALE, ..sample(1, 5 * HZ, 0) };
+        assert_eq!(read(&mut compensator, &stale), (5.0, Status::STALE | Status::FREQUENCY_OUTSIDE));
+        // A flag that is raised twice is raised.
+        let stale = Sample { faults: Status::STALE | Status::FREQUENCY_OUTSIDE, ..stale };
+        let reversed = read(&mut compensator, &stale).1;
+        assert_eq!(reversed, Status::STALE | Status::FREQUENCY_OUTSIDE | Status::TIME_REVERSED);
+    }
+
+    #[test]
+    fn a_result_beyond_every_number_is_none_and_says_why() {
+        let mut blob = blob(&[]);
+        blob.scaling.line_g[1] = f32::MAX;
+        let mut compensator = Compensator::load(&blob).expect("finite numbers");
+        let stale = Sample { faults: Status::STALE, ..sample(0, 4 * HZ, 0) };
+        let none = Reading::none(0, Status::STALE | Status::UNCALIBRATED);
+        assert!(compensator.compensate(&stale).same_bits(&none));
+    }
+
+    #[test]
+    fn the_ends_of_the_domain_belong_to_it() {
+        let (frequency, temperature) = (Status::FREQUENCY_OUTSIDE, Status::TEMPERATURE_OUTSIDE);
+        for (delta_f_uhz, temperature_uc, status) in [
+            (4 * HZ, 20_000_000, Status::empty()),
+            (-4 * HZ, -20_000_000, Status::empty()),
+            (4 * HZ + 1, 0, frequency),
+            (-4 * HZ - 1, 0, frequency),
+            (0, 20_000_001, temperature),
+            (0, -20_000_001, temperature),
+        ] {
+            let reading = ready(&[]).compensate(&sample(0, delta_f_uhz, temperature_uc));
+            assert_eq!(reading.status, status, "{delta_f_uhz} µHz, {temperature_uc} µ°C");
+        }
+    }
+
+    #[test]
+    fn a_bias_is_subtracted_as_it_is_at_the_acceleration_that_it_leaves() {
+        // 1/8 g per g² of 2 g: first 1/2 g; of the remaining 1.5 g: 9/32 g.
+        assert_eq!(read(&mut ready(&[(5, 0.125)]), &sample(0, 2 * HZ, 0)).0, 2.0 - 0.281_25);
+    }
+
+    #[test]
+    fn a_disturbance_is_taken_out_of_what_was_measured() {
+        // A tenth of a day with a clock that gains 1e6 ppm a day: the difference was seen by a tenth too small.
+        let aged = Sample { age_s: Some(8640), ..sample(0, 2 * HZ, 0) };
+        let (reading_g, _) = read(&mut ready(&[(20, 1e6)]), &aged);
+        assert!((reading_g - 2.2).abs() < 1e-6, "{reading_g}");
+        // The resonators have not yet followed the thermometer.
+        let mut lagging = ready(&[(1, 3600.0)]);
+        lagging.compensate(&sample(0, 0, 0));
+        let (reading_g, status) = read(&mut lagging, &sample(1, 0, 10_000_000));
+        assert!(reading_g.abs() < 0.001, "{reading_g}");
+        assert_eq!(status, Status::SETTLING);
+        lagging.restart();
+        assert_eq!(read(&mut lagging, &sample(2, 0, 10_000_000)).0, 5.0, "as at power-on after a long soak");
+    }
+
+    #[test]
+    fn impossible_calibrations_are_refused_by_what_is_wrong() {
+        let refused = |spoil: fn(&mut Blob)| {
+            let mut blob = blob(&[]);
+            spoil(&mut blob);
+            Compensator::load(&blob).err()
+        };
+        assert_eq!(refused(|_| ()), None);
+        for spoil in [
+            (|b| b.domain.delta_f_uhz = (1, 1)) as fn(&mut Blob),
+            |b| b.domain.delta_f_uhz = (1, 0),
+            |b| b.domain.temperature_uc = (1, 1),
+            |b| b.domain.temperature_uc = (1, 0),
+        ] {
+            assert_eq!(refused(spoil), Some(LoadError::Domain));
+        }
+        for spoil in [
+            (|b| b.scaling.delta_f_gain_per_hz = 0.0) as fn(&mut Blob),
+            |b| b.scaling.temperature_gain_per_c = 0.0,
+            |b| b.scaling.temperature_gain_per_c = -1.0,
+            |b| b.scaling.output_g = f32::NAN,
+        ] {
+            assert_eq!(refused(spoil), Some(LoadError::Number));
+        }
+        assert!(matches!(refused(|b| b.proof ^= 1), Some(LoadError::Proof { .. })));
+    }
+}

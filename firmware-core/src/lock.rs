@@ -128,10 +128,22 @@ mod tests {
 
     #[test]
     fn no_two_challenges_are_alike() {
-        let mut lock = Lock::new();
-        let mut nonces = [0; 64];
-        nonces.iter_mut().enumerate().for_each(|(i, nonce)| *nonce = lock.challenge(i as u64 / 2));
-        nonces.sort_unstable();
-        assert!(nonces.windows(2).all(|pair| pair[0] != pair[1]));
+        // From power-on, and after weeks without a break, when the clock needs more bits.
+        for begun_us in [0, 0x3F << 40] {
+            let mut lock = Lock::new();
+            let mut nonces = [0; 64];
+            nonces.iter_mut().enumerate().for_each(|(i, nonce)| *nonce = lock.challenge(begun_us + i as u64 / 2));
+            nonces.sort_unstable();
+            assert!(nonces.windows(2).all(|pair| pair[0] != pair[1]));
+        }
+    }
+
+    #[test]
+    fn a_nonce_is_scattered_as_the_published_generator_does_it() {
+        // SplitMix64 from seed 0: the finaliser of multiples of the golden ratio.
+        const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
+        assert_eq!(scattered(STEP), 0xE220_A839_7B1D_CDAF);
+        assert_eq!(scattered(STEP.wrapping_mul(2)), 0x6E78_9E6A_A1B9_65F4);
+        assert_eq!(scattered(STEP.wrapping_mul(3)), 0x06C4_5D18_8009_454F);
     }
 }

@@ -196,4 +196,31 @@ mod tests {
         state.advance(&memory, 3.0, 1.0);
         assert!((state.departure() - 2.0).abs() < 1e-12);
     }
+
+    #[test]
+    fn a_lag_of_no_time_follows_at_once_and_is_settled_for_good() {
+        for tau_s in [0.0, -1.0] {
+            let mut state = State::REST;
+            for _ in 0..3 {
+                state.advance(&Memory::Lag { tau_s }, 5.0_f32, 1.0);
+                assert_eq!((state.departure(), state.is_settled()), (0.0, true), "{tau_s} s");
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_whose_share_of_the_time_constant_is_no_number_above_zero_still_counts() {
+        let mut state = State::REST;
+        state.advance(&Memory::Lag { tau_s: f32::MAX }, 1.0, 1e-8);
+        assert_eq!(state.departure().to_bits(), 1.0_f32.to_bits());
+    }
+
+    #[test]
+    fn a_play_that_just_reaches_either_end_knows_where_it_is() {
+        for (increment, settled) in [(1.0_f32, true), (-1.0, true), (0.75, false), (-0.75, false)] {
+            let mut state = State::REST;
+            state.advance(&Memory::Play { radius: 1.0 }, increment, 1.0);
+            assert_eq!((state.departure(), state.is_settled()), (increment, settled));
+        }
+    }
 }

@@ -208,4 +208,33 @@ mod tests {
         clock.restart();
         assert_eq!(clock.step(&Sample::from_difference(1091, 0, 0)).0, Step::Anew);
     }
+
+    fn scaling() -> Scaling {
+        Scaling {
+            delta_f_zero_uhz: 1_000_000,
+            delta_f_gain_per_hz: 2.0,
+            temperature_zero_uc: 5_000_000,
+            temperature_gain_per_c: 4.0,
+            line_g: [1.0, 10.0, 100.0, 1000.0],
+            output_g: 0.5,
+        }
+    }
+
+    #[test]
+    fn a_sample_is_seen_in_its_units_and_from_the_zeros_of_the_scaling() {
+        let mut sample = Sample::from_difference(0, 3_500_000, 20_000_000);
+        (sample.power_on_us, sample.age_s, sample.channels[1]) = (7_000_000, Some(2 * 86_400), -1_500_000);
+        let seen: Observation<f64> = Observation::new(&sample, &scaling());
+        assert_eq!((seen.delta_f_offset_hz, seen.delta_f_hz), (2.5, 3.5));
+        assert_eq!((seen.temperature_offset_c, seen.temperature_c), (15.0, 20.0));
+        assert_eq!((seen.power_on_s, seen.channels[1]), (7.0, -1.5));
+        assert!((seen.age_days - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_first_order_instrument_and_the_network_add_up() {
+        let scale: Scale<f64> = Scale::new(&scaling());
+        assert_eq!(scale.inputs(3.0, 5.0), [6.0, 20.0]);
+        assert_eq!(scale.reading_g(2.0, 3.0, 8.0), 1.0 + 20.0 + 300.0 + 6000.0 + 4.0);
+    }
 }
