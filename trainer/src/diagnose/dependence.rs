@@ -76,7 +76,7 @@ fn rate(stretch: &Stretch, cell: &Cell) -> f64 {
     let (first, last) =
         (rows[cell.rows.start.saturating_sub(1)].sample, rows[cell.rows.end.min(rows.len() - 1)].sample);
     let seconds = last.time_us.saturating_sub(first.time_us) as f64 * 1e-6;
-    let warmer_c = f64::from(last.temperature_uc - first.temperature_uc) * 1e-6;
+    let warmer_c = (f64::from(last.temperature_uc) - f64::from(first.temperature_uc)) * 1e-6;
     if seconds > 0.0 { warmer_c / seconds } else { 0.0 }
 }
 

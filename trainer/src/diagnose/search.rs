@@ -288,7 +288,7 @@ impl Case<'_> {
         for _ in 0..TURNS {
             let bench = self.benches(left, &scene.freedom, &noises)?.sum?;
             let score = bench.score(&bias);
-            let share = (-score.right[0] / score.normal[(0, 0)]).clamp(-bound, bound);
+            let share = score.amplitudes()?[0].clamp(-bound, bound);
             freed.sum = Some(sum.iter().zip(&bias).map(|(sum, bias)| sum + bias * share).collect());
             let sum_only = Left { delta: Vec::new(), sum: freed.sum.clone() };
             noises.sum = self.sum_noise(&sum_only, &scene.freedom, Some(&noises));
@@ -341,8 +341,8 @@ impl Case<'_> {
         Contender { effect: candidate.effect.clone(), values, evidence, noises: None }
     }
 
-    /// The scale factor, mHz per µg.
+    /// Size of the scale factor, mHz per µg: its sign is a matter of wiring.
     fn mhz_per_ug(&self) -> f64 {
-        self.instrument.scale_factor_hz_per_g(&self.layout) * 1e3 * 1e-6
+        self.instrument.scale_factor_hz_per_g(&self.layout).abs() * 1e3 * 1e-6
     }
 }
