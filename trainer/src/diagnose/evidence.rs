@@ -77,6 +77,15 @@ impl Bench {
         Score { normal, right }
     }
 
+    /// The score of columns that are nothing but in one run.
+    pub fn score_in(&self, run: usize, columns: &DMatrix<f64>) -> Score {
+        let columns = self.whitening.of_run(run, columns);
+        let cross = self.freedom[run].tr_mul(&columns);
+        let normal = columns.tr_mul(&columns) - cross.tr_mul(&self.factor.solve(&cross));
+        let right = columns.tr_mul(&self.residual[run]).column(0) - cross.tr_mul(&self.absorbed);
+        Score { normal, right }
+    }
+
     /// The scores of many candidates.
     pub fn scores(&self, candidates: &[&Columns]) -> Vec<Score> {
         let of = |some: &[&Columns]| {
@@ -185,14 +194,19 @@ fn places(candidates: &[&Columns]) -> Vec<Range<usize>> {
     candidates.iter().scan(0, place).collect()
 }
 
+/// Products of so many runs are added up by one thread.
+const RUNS_TOGETHER: usize = 8;
+
 /// Σ AᵀB over the runs.
 pub(super) fn product(a: &Columns, b: &Columns) -> DMatrix<f64> {
     let (rows, columns) = (width(a), width(b));
     let pairs: Vec<_> = a.iter().zip(b).collect();
     // Blocks of columns at a time; `tr_mul` takes one pair of columns after the other.
     let of = |(a, b): (&DMatrix<f64>, &DMatrix<f64>)| if columns > 1 { a.transpose() * b } else { a.tr_mul(b) };
-    let products: Vec<DMatrix<f64>> = pairs.into_par_iter().map(of).collect();
-    products.into_iter().fold(DMatrix::zeros(rows, columns), |sum, product| sum + product)
+    // Not all at once: of thousands of runs the products need more room than what is multiplied.
+    let sum = |some: &[_]| some.iter().fold(DMatrix::zeros(rows, columns), |sum, pair| sum + of(*pair));
+    let sums: Vec<DMatrix<f64>> = pairs.par_chunks(RUNS_TOGETHER).map(sum).collect();
+    sums.into_iter().reduce(|sum, next| sum + next).unwrap_or_else(|| DMatrix::zeros(rows, columns))
 }
 
 fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {

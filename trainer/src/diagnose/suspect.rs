@@ -1,7 +1,8 @@
 //! Courses that no known effect has, and that tell of something unknown where the residual follows one.
 
 use super::case::Case;
-use super::layout::{Cell, Stretch};
+use super::evidence::width;
+use super::layout::{Cell, Layout, Stretch};
 use super::whitening::Columns;
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
@@ -13,13 +14,44 @@ pub(super) struct Suspect {
     /// Its period, if it has one.
     pub period_s: Option<f64>,
     /// Its course in the cells, each free to be of any size.
-    pub columns: Columns,
+    pub course: Course,
+}
+
+/// Where a structure shows.
+pub(super) enum Course {
+    /// In all runs.
+    All(Columns),
+    /// In one of them: there may be thousands, and most of a column for each would be zeros.
+    One(usize, DMatrix<f64>),
+}
+
+impl Course {
+    /// How many columns there are.
+    pub fn width(&self) -> usize {
+        match self {
+            Self::All(columns) => width(columns),
+            Self::One(_, columns) => columns.ncols(),
+        }
+    }
+
+    /// With its zeros.
+    pub fn whole(&self, layout: &Layout) -> Columns {
+        let (run, own) = match self {
+            Self::All(columns) => return columns.clone(),
+            Self::One(run, own) => (*run, own),
+        };
+        let zeros = |stretch: &Stretch| DMatrix::zeros(stretch.cells.len(), own.ncols());
+        let mut columns: Columns = layout.stretches.iter().map(zeros).collect();
+        columns[run].copy_from(own);
+        columns
+    }
 }
 
 /// A run that covers less than this of the scaled temperature has no course over it.
 const LEAST_COURSE: f64 = 0.1;
-/// Levels are told apart to a thousandth of 1 g.
+/// Levels are told apart to a thousandth of 1 g, or coarser where there would be more than so many.
 const PER_LEVEL: f64 = 1e3;
+const MOST_LEVELS: usize = 64;
 /// The solar day and the moon's half day, s.
 const DAYS_S: [f64; 2] = [86_400.0, 44_714.0];
 /// A swing by the calendar must have been followed this long in all, in periods.
@@ -44,12 +76,12 @@ impl Case<'_> {
         let swing = |period_s: f64, leans: bool| Suspect {
             depends_on: vec!["time_s".to_owned()],
             period_s: Some(period_s),
-            columns: self.columns(|_, stretch, cell| {
+            course: Course::All(self.columns(|_, stretch, cell| {
                 let first = &stretch.run.rows[0].sample;
                 let phase = (f64::from(first.age_s.unwrap_or(0)) + cell.time_s) / period_s * std::f64::consts::TAU;
                 let size = self.sample_ug * if leans { cell.cross_g } else { 1.0 };
                 [phase.sin() * size, phase.cos() * size]
-            }),
+            })),
         };
         periods.flat_map(|period_s| [swing(period_s, false), swing(period_s, true)]).collect()
     }
@@ -65,13 +97,11 @@ impl Case<'_> {
             .map(|(odd, stretch)| {
                 let cells = stretch.cells.len().max(1) as f64;
                 let middle = stretch.cells.iter().map(|cell| cell.t).sum::<f64>() / cells;
-                let of = |index: usize, _: &Stretch, cell: &Cell| {
-                    [if index == odd { (cell.t - middle) * self.sample_ug } else { 0.0 }]
-                };
+                let course = stretch.cells.iter().map(|cell| (cell.t - middle) * self.sample_ug);
                 Suspect {
                     depends_on: vec!["run".to_owned(), "temperature_c".to_owned()],
                     period_s: None,
-                    columns: self.columns(of),
+                    course: Course::One(odd, DMatrix::from_iterator(stretch.cells.len(), 1, course)),
                 }
             })
             .collect()
@@ -96,7 +126,7 @@ impl Case<'_> {
             columns
         };
         let depends_on = || vec!["temperature_c".to_owned(), "time_s".to_owned()];
-        let suspect = |sign| Suspect { depends_on: depends_on(), period_s: None, columns: record(sign) };
+        let suspect = |sign| Suspect { depends_on: depends_on(), period_s: None, course: Course::All(record(sign)) };
         [1.0, -1.0].map(suspect).into()
     }
 
@@ -104,15 +134,23 @@ impl Case<'_> {
     pub fn kink(&self) -> Suspect {
         let of = |_: usize, _: &Stretch, cell: &Cell| [cell.level_g.abs(), cell.level_g * cell.level_g.abs()];
         let columns = self.columns(of).into_iter().map(|run| run * self.sample_ug).collect();
-        Suspect { depends_on: vec!["reference_g".to_owned()], period_s: None, columns }
+        Suspect { depends_on: vec!["reference_g".to_owned()], period_s: None, course: Course::All(columns) }
     }
 
     /// For each level, one wherever it was applied.
     pub fn levels(&self) -> Columns {
-        let level = |cell: &Cell| (cell.level_g * PER_LEVEL).round() as i64;
-        let distinct: Vec<i64> = self.layout.cells().map(level).collect::<BTreeSet<_>>().into_iter().collect();
+        let level = |cell: &Cell, per_level: f64| (cell.level_g * per_level).round() as i64;
+        let told_apart = |per_level: f64| -> Vec<i64> {
+            self.layout.cells().map(|cell| level(cell, per_level)).collect::<BTreeSet<_>>().into_iter().collect()
+        };
+        let mut per_level = PER_LEVEL;
+        let mut distinct = told_apart(per_level);
+        while distinct.len() > MOST_LEVELS {
+            per_level /= 2.0;
+            distinct = told_apart(per_level);
+        }
         let of = |stretch: &Stretch| {
-            let here = |row: usize, column: usize| level(&stretch.cells[row]) == distinct[column];
+            let here = |row: usize, column: usize| level(&stretch.cells[row], per_level) == distinct[column];
             DMatrix::from_fn(stretch.cells.len(), distinct.len(), |row, column| f64::from(u8::from(here(row, column))))
         };
         self.layout.stretches.iter().map(of).collect()

@@ -15,10 +15,10 @@
 
 use super::case::{Case, Noises, generous};
 use super::dependence::TEMPERATURE;
-use super::evidence::{Bench, stacked, width};
+use super::evidence::{Bench, Score, stacked, width};
 use super::instrument::Known;
 use super::noise_search::noise;
-use super::suspect::Suspect;
+use super::suspect::{Course, Suspect};
 use super::whitening::{Columns, MOUNTING, NoiseModel, POSE, POSITION, RUN, TURN};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -62,7 +62,11 @@ impl Case<'_> {
         let Some(instrument) = scene.free(&freedom) else { return Vec::new() };
         let mut suspects = self.structures();
         let other = self.followed(channels).into_iter().filter(|(name, _)| name != TEMPERATURE);
-        suspects.extend(other.map(|(name, columns)| Suspect { depends_on: vec![name], period_s: None, columns }));
+        suspects.extend(other.map(|(name, columns)| Suspect {
+            depends_on: vec![name],
+            period_s: None,
+            course: Course::All(columns),
+        }));
         let mut found = scene.followed(&suspects, &instrument);
         found.extend(scene.poses(&instrument));
         found.extend(self.swing(known, noises));
@@ -129,9 +133,19 @@ impl Scene<'_> {
 
     fn screened<'s>(&self, noise: NoiseModel, suspects: &'s [Suspect], free: &Free) -> Vec<&'s Suspect> {
         let Some(bench) = self.bench(noise, self.left, free.columns) else { return Vec::new() };
-        let columns: Vec<&Columns> = suspects.iter().map(|suspect| &suspect.columns).collect();
-        let price = |suspect: &Suspect| self.case.price() * width(&suspect.columns) as f64;
-        let scores = bench.scores(&columns).into_iter().zip(suspects);
+        let everywhere = |suspect: &'s Suspect| match &suspect.course {
+            Course::All(columns) => Some(columns),
+            Course::One(..) => None,
+        };
+        let columns: Vec<&Columns> = suspects.iter().filter_map(everywhere).collect();
+        let price = |suspect: &Suspect| self.case.price() * suspect.course.width() as f64;
+        let mut of_all = bench.scores(&columns).into_iter();
+        let score = |suspect: &'s Suspect| match &suspect.course {
+            Course::All(_) => of_all.next(),
+            Course::One(run, columns) => Some(bench.score_in(*run, columns)),
+        };
+        let scores: Vec<Option<Score>> = suspects.iter().map(score).collect();
+        let scores = scores.into_iter().zip(suspects).filter_map(|(score, suspect)| Some((score?, suspect)));
         let mut order: Vec<(f64, &Suspect)> =
             scores.map(|(score, suspect)| (score.gain() - price(suspect), suspect)).collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -140,26 +154,27 @@ impl Scene<'_> {
 
     /// Fits amplitudes and noise in turn, where an instrument of this freedom may absorb what it can.
     fn judged(&self, suspect: &Suspect, free: &Free) -> Option<Telltale> {
-        let freedom = free.columns;
-        let widened = stacked(freedom, &generous(&suspect.columns, self.case.sample_ug));
+        let (freedom, columns) = (free.columns, suspect.course.whole(&self.case.layout));
+        let widened = stacked(freedom, &generous(&columns, self.case.sample_ug));
         let (mut with, mut fitted, mut size_ug) = (self.noise, self.left.clone(), 0.0);
         for _ in 0..TURNS {
             let bench = self.bench(with, self.left, freedom)?;
-            let score = bench.score(&suspect.columns);
-            let amplitudes = DMatrix::from_column_slice(width(&suspect.columns), 1, score.amplitudes()?.as_slice());
-            let course: Columns = suspect.columns.iter().map(|run| run * &amplitudes).collect();
+            let score = bench.score(&columns);
+            let amplitudes = DMatrix::from_column_slice(width(&columns), 1, score.amplitudes()?.as_slice());
+            let course: Columns = columns.iter().map(|run| run * &amplitudes).collect();
             size_ug = self.case.rms_ug(&bench.beyond(&course, freedom));
             fitted = self.left.iter().zip(&course).map(|(left, course)| left + course).collect();
             with = noise(&self.case.layout, &fitted, &widened, with, false);
         }
         let gain = free.deviance - self.bench(with, &fitted, freedom)?.deviance;
-        let evidence = gain - self.case.price() * width(&suspect.columns) as f64;
+        let evidence = gain - self.case.price() * width(&columns) as f64;
         Some(Telltale { depends_on: suspect.depends_on.clone(), period_s: suspect.period_s, evidence, size_ug })
     }
 
     /// The kink, if it is more than levels that scatter about a smooth curve: a table's error is the same at every visit.
     fn kinked(&self) -> Option<Telltale> {
         let (kink, levels) = (self.case.kink(), self.case.levels());
+        let course = kink.course.whole(&self.case.layout);
         // Only a smooth instrument may absorb it, not whatever a network may be bent to.
         let smooth = self.case.instrument.smooth(&self.case.layout);
         let is_kink = |one: &Telltale| one.evidence > ENOUGH_OF_KINK && one.size_ug > self.bent_ug();
@@ -167,11 +182,11 @@ impl Scene<'_> {
         let deviances = |scatter: &f64| {
             let levels: Columns = levels.iter().map(|run| run * (scatter * self.case.sample_ug)).collect();
             let bench = self.bench(self.noise, self.left, &stacked(&smooth, &levels))?;
-            Some([bench.deviance, bench.deviance - bench.score(&kink.columns).gain()])
+            Some([bench.deviance, bench.deviance - bench.score(&course).gain()])
         };
         let tried: Vec<[f64; 2]> = SCATTERS.par_iter().filter_map(deviances).collect();
         let [without, with] = [0, 1].map(|side| tried.iter().map(|both| both[side]).fold(f64::INFINITY, f64::min));
-        let evidence = without - with - self.case.price() * width(&kink.columns) as f64;
+        let evidence = without - with - self.case.price() * width(&course) as f64;
         Some(Telltale { evidence: telltale.evidence.min(evidence), ..telltale })
     }
 

@@ -63,6 +63,11 @@ impl Whitening {
         let pairs: Vec<_> = self.passes.iter().zip(columns).collect();
         pairs.into_par_iter().map(|(pass, values)| pass.whitened(values)).collect()
     }
+
+    /// The same of one run.
+    pub fn of_run(&self, run: usize, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        self.passes[run].whitened(columns)
+    }
 }
 
 /// A small random walk adds this share of the sample noise in a second.
