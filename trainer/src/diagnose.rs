@@ -47,6 +47,7 @@ use crate::campaign::Campaign;
 use crate::model::Model;
 use crate::progress::Progress;
 use crate::train::{EffectChoice, TrainError};
+use crate::yardstick::Yardstick;
 use thiserror::Error;
 
 /// Why there is no diagnosis.
@@ -58,6 +59,9 @@ pub enum DiagnoseError {
     /// The residual's noise can't be told.
     #[error("the noise can't be told from these measurements: no two neighbouring rows share a position")]
     NoNoise,
+    /// The numbers lead nowhere.
+    #[error("{0}")]
+    Numbers(&'static str),
     /// The campaign lacks what the model's effects follow.
     #[error(transparent)]
     Effect(#[from] TrainError),
@@ -70,10 +74,24 @@ pub enum DiagnoseError {
 /// # Errors
 /// [`DiagnoseError`] says what is missing.
 pub fn diagnose(model: &Model, campaign: &Campaign, progress: &dyn Progress) -> Result<Diagnosis, DiagnoseError> {
-    judge::judge(model, campaign, progress)
+    let yardstick = yardstick(model, campaign)?;
+    let diagnosis = judge::judge(model, &yardstick.campaign(campaign), &yardstick, progress)?;
+    Ok(diagnosis.converted(
+        |size| yardstick.outside(size),
+        |about, name, value| yardstick.coefficient_outside(about, name, value),
+    ))
 }
+
+fn yardstick(model: &Model, campaign: &Campaign) -> Result<Yardstick, DiagnoseError> {
+    Yardstick::of_model(model, campaign).ok_or(DiagnoseError::Numbers(UNUSABLE))
+}
+
+const UNUSABLE: &str = "references and readings are too large or too small for numbers: give them in another unit";
 
 /// Where a joint fit of these effects should begin, judged beside a static `model` of the same campaign.
 pub(crate) fn starts(model: &Model, campaign: &Campaign, choices: &[EffectChoice]) -> Option<Vec<EffectChoice>> {
-    judge::starts(model, campaign, choices)
+    let yardstick = yardstick(model, campaign).ok()?;
+    let choices = yardstick.choices_inside(choices);
+    let started = judge::starts(model, &yardstick.campaign(campaign), &yardstick, &choices)?;
+    Some(yardstick.choices_outside(&started))
 }

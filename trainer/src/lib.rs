@@ -36,3 +36,4 @@ pub mod retrain;
 pub mod sensitivity;
 pub mod train;
 mod warnings;
+mod yardstick;

@@ -1,12 +1,15 @@
 //! How much of a residual is noise that no model could remove.
 
-use crate::campaign::Run;
+use crate::campaign::{Row, Run};
 
 /// The residuals of one run in the order of its rows, g.
 pub type RunResiduals = Vec<f64>;
 
-/// References closer than this belong to the same state, g.
-const SAME_STATE_G: f64 = 1e-3;
+/// References closer than this share of half of what all span belong to the same state,
+const SAME_STATE: f64 = 1e-3;
+/// and so do any that differ by less than so many steps of the residual: what scatters less than the reading does is no
+/// move.
+const SAME_STEPS: f64 = 4.0;
 /// A smaller share of neighbours meets at one reference by chance. Their inputs differ, and so does what
 /// the model misses of them.
 const LEAST_SHARE: f64 = 0.1;
@@ -20,17 +23,20 @@ const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 /// beginning of a state don't count. `None` where neighbours share a state by chance at most.
 #[must_use]
 pub fn sample_sigma_g<'a>(runs: impl IntoIterator<Item = (&'a Run, &'a RunResiduals)>) -> Option<f64> {
-    let mut steps: Vec<f64> = Vec::new();
-    let mut pairs = 0;
+    let mut both: Vec<[f64; 2]> = Vec::new();
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (run, residuals) in runs {
-        pairs += run.rows.len().saturating_sub(1);
-        for (rows, pair) in run.rows.windows(2).zip(residuals.windows(2)) {
-            if (rows[1].reference_g - rows[0].reference_g).abs() < SAME_STATE_G {
-                steps.push((pair[1] - pair[0]).abs());
-            }
-        }
+        let step = |(rows, pair): (&[Row], &[f64])| {
+            [rows[1].reference_g - rows[0].reference_g, pair[1] - pair[0]].map(f64::abs)
+        };
+        both.extend(run.rows.windows(2).zip(residuals.windows(2)).map(step));
+        (low, high) =
+            run.rows.iter().fold((low, high), |(low, high), row| (low.min(row.reference_g), high.max(row.reference_g)));
     }
-    if (steps.len() as f64) < LEAST_SHARE * pairs as f64 || steps.is_empty() {
+    let typical = normal_sigma(both.iter().map(|[_, step]| *step).collect());
+    let same = (SAME_STATE * (high / 2.0 - low / 2.0)).max(SAME_STEPS * typical);
+    let steps: Vec<f64> = both.iter().filter(|[apart, _]| *apart <= same).map(|[_, step]| *step).collect();
+    if (steps.len() as f64) < LEAST_SHARE * both.len() as f64 || steps.is_empty() {
         return None;
     }
     Some(normal_sigma(steps) / 2.0_f64.sqrt())
@@ -133,7 +139,6 @@ pub fn rms<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::Row;
     use protocol::Sample;
     use std::path::PathBuf;
 
@@ -145,7 +150,7 @@ mod tests {
             source: PathBuf::new(),
             rows: (0..100).map(|k| row(k, (k * levels / 100) as f64)).collect(),
         };
-        let residuals: RunResiduals = (0..100).map(|k| f64::from(k % 2)).collect();
+        let residuals: RunResiduals = (0..100).map(|k| f64::from(k % 2) * 1e-3).collect();
         assert_eq!(sample_sigma_g([(&run(98), &residuals)]), None);
         assert!(sample_sigma_g([(&run(10), &residuals)]).is_some());
     }

@@ -20,6 +20,7 @@ use crate::fit::polynomial::Polynomial;
 use crate::model::{DeviceLimit, Model};
 use crate::progress::{Progress, Quiet};
 use crate::residuals::{Residuals, arranged, residuals};
+use crate::yardstick::Yardstick;
 use protocol::Weights;
 use task::Task;
 
@@ -144,6 +145,9 @@ pub enum TrainError {
     /// What was found can't measure.
     #[error("what the training found is no instrument: {0}")]
     Unusable(DeviceLimit),
+    /// References beyond what a device can compute with.
+    #[error("references of this size are beyond the 32-bit numbers of a device: give them in another unit")]
+    Numbers,
     /// No restart gave finite weights.
     #[error("no restart converged to finite weights; look at the campaign with `tempco inspect`")]
     NoFiniteWeights,
@@ -178,7 +182,8 @@ impl Search {
 /// # Errors
 /// [`TrainError`] says what is missing.
 pub fn check(campaign: &Campaign, split: &Split, settings: &TrainSettings) -> Result<(), TrainError> {
-    Task::new(campaign, split, settings, &Quiet).map(|_| ())
+    let yardstick = Yardstick::of_training(campaign, settings).ok_or(TrainError::Numbers)?;
+    Task::new(&yardstick.campaign(campaign), split, &yardstick.settings(settings), yardstick, &Quiet).map(|_| ())
 }
 
 /// Trains on the split's training runs.
@@ -193,19 +198,21 @@ pub fn train(
     settings: &TrainSettings,
     progress: &dyn Progress,
 ) -> Result<Trained, TrainError> {
-    let task = Task::new(campaign, split, settings, progress)?;
+    let yardstick = Yardstick::of_training(campaign, settings).ok_or(TrainError::Numbers)?;
+    let (scaled, inside) = (yardstick.campaign(campaign), yardstick.settings(settings));
+    let task = Task::new(&scaled, split, &inside, yardstick, progress)?;
     if !settings.effects.is_empty() && settings.method != Method::SecondOrder {
         return Err(TrainError::EffectsNeedSecondOrder);
     }
     if settings.effects.iter().all(|choice| choice.start.is_some()) {
-        return fitted(campaign, split, task);
+        return fitted(campaign, split, settings, task);
     }
-    let started = started_well(campaign, split, settings, progress)?;
-    fitted(campaign, split, Task::new(campaign, split, &started, progress)?)
+    let started = yardstick.settings(&started_well(campaign, split, settings, progress)?);
+    fitted(campaign, split, settings, Task::new(&scaled, split, &started, yardstick, progress)?)
 }
 
-/// The model of a task that is ready to be fitted.
-fn fitted(campaign: &Campaign, split: &Split, task: Task) -> Result<Trained, TrainError> {
+/// The model of a task that is ready to be fitted; `stated` are its settings in the campaign's own units.
+fn fitted(campaign: &Campaign, split: &Split, stated: &TrainSettings, task: Task) -> Result<Trained, TrainError> {
     let (settings, progress) = (task.settings, task.progress);
     progress.begins(settings.restarts);
     let Search { restarts, best } = match &settings.method {
@@ -215,14 +222,37 @@ fn fitted(campaign: &Campaign, split: &Split, task: Task) -> Result<Trained, Tra
     let none = if progress.cancelled() { TrainError::Cancelled } else { TrainError::NoFiniteWeights };
     let best = best.filter(|candidate| candidate.cost.is_finite()).ok_or(none)?;
     let mut model = task.model(campaign, split, &best);
+    if !is_representable(&model) {
+        return Err(TrainError::Numbers);
+    }
+    model.provenance.scale_factor_hz_per_g = stated.scale_factor_hz_per_g;
     model.to_blob().map_err(TrainError::Unusable)?;
     if let Some(residual) = training_residual(&model, campaign, split) {
         model.provenance.training_residual = residual;
     }
-    let raw = Baseline { polynomial: Polynomial::fit_degrees(&task.data, 1, 0), scale: task.scale };
-    let baseline = Baseline { polynomial: task.polynomial, scale: task.scale };
+    let outside = |polynomial| Baseline { polynomial, scale: task.scale }.outside(&task.yardstick);
+    let raw = outside(Polynomial::fit_degrees(&task.data, 1, 0));
+    let restarts =
+        restarts.into_iter().map(|one| Restart { residual_g: task.yardstick.outside(one.residual_g), ..one });
+    let restarts = restarts.collect();
+    let baseline = outside(task.polynomial);
     Ok(Trained { model, restarts, baseline, raw })
 }
+
+/// Whether a device's 32-bit numbers hold the model's readings with all their digits.
+fn is_representable(model: &Model) -> bool {
+    let largest = model
+        .scaling
+        .line_g
+        .iter()
+        .chain([&model.scaling.output_g])
+        .fold(0.0, |most: f32, value| most.max(value.abs()));
+    let finite = model.scaling.line_g.iter().chain([&model.scaling.output_g]).all(|value| value.is_finite());
+    finite && (LEAST_READING..=LEAST_READING.recip()).contains(&largest)
+}
+
+/// Beyond this and its reciprocal 32-bit numbers lose digits in products.
+const LEAST_READING: f32 = 1e-30;
 
 /// Restarts of the static model beside which effects find their start.
 const STATIC_RESTARTS: usize = 4;

@@ -2,6 +2,7 @@
 
 use crate::campaign::{Campaign, Row};
 use crate::metrics::levels::{level_width, span};
+use crate::noise::rms;
 use crate::residuals::{Residuals, RunResiduals};
 use crate::sensitivity::Sensitivity;
 
@@ -9,6 +10,8 @@ use crate::sensitivity::Sensitivity;
 const LEVELS_MIN: usize = 5;
 /// References closer than this part of what all of them span are one level.
 const SAME_LEVEL: f64 = 0.025;
+/// So are any closer than so many residuals.
+const SAME_RESIDUALS: f64 = 4.0;
 /// Temperatures further apart than this leave a gap in which a narrow effect can hide, °C.
 const GAP_C: f64 = 12.0;
 /// A slope further off than this betrays a network that learnt levels by heart, ppm.
@@ -17,15 +20,16 @@ const SLOPE_WORST_PPM: f64 = 1000.0;
 /// Warnings for a comparison, each a sentence with what to do.
 #[must_use]
 pub fn warnings(campaign: &Campaign, residuals: &Residuals, sensitivity: Option<&Sensitivity>) -> Vec<String> {
-    [few_levels(campaign), gaps(campaign), below_reference(residuals), slope(sensitivity)]
+    [few_levels(campaign, residuals), gaps(campaign), below_reference(residuals), slope(sensitivity)]
         .into_iter()
         .flatten()
         .collect()
 }
 
-fn few_levels(campaign: &Campaign) -> Option<String> {
+fn few_levels(campaign: &Campaign, residuals: &Residuals) -> Option<String> {
     let references: Vec<f64> = campaign.rows().map(|row| row.reference_g).collect();
-    let width_g = level_width(&references).max(SAME_LEVEL * span(&references));
+    let residual_g = rms(residuals.runs.iter().flat_map(|run| &run.residuals_g));
+    let width_g = level_width(&references).max(SAME_LEVEL * span(&references)).max(SAME_RESIDUALS * residual_g);
     let levels = campaign.levels(width_g).len();
     (levels < LEVELS_MIN).then(|| {
         format!(

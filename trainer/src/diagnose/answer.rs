@@ -1,5 +1,6 @@
 //! What a diagnosis says. Data; whoever shows it formats it.
 
+use firmware_core::effect::{self, About};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -31,6 +32,57 @@ pub struct Diagnosis {
     pub dependences: Vec<Dependence>,
     /// The noise that the judgement rests on.
     pub noise: Noise,
+}
+
+impl Diagnosis {
+    /// In other units: sizes in µg, and the coefficients of effects.
+    pub(super) fn converted(
+        mut self,
+        size: impl Fn(f64) -> f64,
+        coefficient: impl Fn(&About, &str, f64) -> f64,
+    ) -> Self {
+        let Self {
+            residual_ug,
+            residual_after_ug,
+            noise_floor_ug,
+            foreseeable_ug,
+            foreseeable_after_ug,
+            findings,
+            unexplained,
+            dependences,
+            noise,
+            verdict: _,
+            explainable: _,
+            unobservable: _,
+        } = &mut self;
+        let mut sizes = vec![residual_ug, residual_after_ug, noise_floor_ug, foreseeable_ug, foreseeable_after_ug];
+        for finding in findings {
+            sizes.extend([&mut finding.residual_before_ug, &mut finding.residual_after_ug]);
+            let Some(about) = effect::about(&finding.effect) else { continue };
+            for (name, Estimate { value, sigma }) in &mut finding.parameters {
+                *value = coefficient(about, name, *value);
+                *sigma = coefficient(about, name, *sigma).abs();
+            }
+        }
+        sizes.extend(unexplained.iter_mut().map(|rest| &mut rest.residual_ug));
+        sizes.extend(dependences.iter_mut().flat_map(|one| [&mut one.before_ug, &mut one.after_ug]));
+        let Noise {
+            sample_ug,
+            flicker_ug,
+            wander_ug,
+            walk_ug_per_sqrt_h,
+            node_ug,
+            position_ug,
+            pose_ug,
+            mounting_ug,
+            turn_ug,
+            run_ug,
+        } = noise;
+        sizes.extend([sample_ug, flicker_ug, wander_ug, walk_ug_per_sqrt_h, node_ug]);
+        sizes.extend([position_ug, pose_ug, mounting_ug, turn_ug, run_ug]);
+        sizes.into_iter().for_each(|one| *one = size(*one));
+        self
+    }
 }
 
 /// The answer in a word.

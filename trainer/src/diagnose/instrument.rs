@@ -10,6 +10,7 @@ use crate::fit::effects::{Chosen, Coefficients, Deed, deeds, mean_deed};
 use crate::model::Model;
 use crate::noise::{rms, sample_sigma_g};
 use crate::train::{HIDDEN_SIZE, OUTPUT_SIZE};
+use crate::yardstick::Yardstick;
 use firmware_core::activation::{sigmoid, slope};
 use firmware_core::effect::{self, About, Role};
 use firmware_core::{Memory, Network, Scale};
@@ -28,6 +29,8 @@ pub(super) struct Instrument {
     model: Model,
     network: Network<f64>,
     scale: Scale<f64>,
+    /// What its readings are multiplied with.
+    factor: f64,
 }
 
 /// Effects with their coefficients.
@@ -144,15 +147,15 @@ const POWERS: (usize, usize, usize) = (3, 6, 7);
 const FREEDOM: f64 = 0.1;
 
 impl Instrument {
-    /// The static map of `model`; its effects are not part of it.
-    pub fn new(model: &Model) -> Self {
-        let scaling = model.scaling.to_wire();
-        Self { network: Network::new(&model.weights()), scale: Scale::new(&scaling), model: model.clone() }
+    /// The static map of `model`, its readings in the yardstick's units; its effects are not part of it.
+    pub fn new(model: &Model, yardstick: &Yardstick) -> Self {
+        let (network, scale) = (Network::new(&model.weights()), Scale::new(&model.scaling.to_wire()));
+        Self { network, scale, model: model.clone(), factor: yardstick.factor() }
     }
 
     /// What the static map reads at the scaled inputs, g.
     pub fn reading_g(&self, x: f64, t: f64) -> f64 {
-        self.scale.reading_g(x, t, self.network.evaluate(x, t))
+        self.factor * self.scale.reading_g(x, t, self.network.evaluate(x, t))
     }
 
     /// What the effects do in each cell.
@@ -230,7 +233,7 @@ impl Instrument {
 
     /// A row of departures from the line in each cell, µg, from those in units of the network's output.
     fn departures(&self, layout: &Layout, row: impl Fn(&Cell) -> Vec<f64> + Sync) -> Columns {
-        let departure_ug = f64::from(self.model.scaling.output_g).abs() * UG;
+        let departure_ug = (self.factor * f64::from(self.model.scaling.output_g)).abs() * UG;
         let of = |stretch: &Stretch| {
             let rows: Vec<Vec<f64>> = stretch.cells.iter().map(&row).collect();
             let width = rows.first().map_or(0, Vec::len);
@@ -258,6 +261,11 @@ impl Instrument {
         let slope = |cell: &Cell| (reading(cell.x, cell.t + 0.01) - reading(cell.x, cell.t - 0.01)) / 0.02;
         let slopes: Vec<f64> = layout.cells().map(slope).collect();
         rms(&slopes) / layout.scale.temperature_half_span_c
+    }
+
+    /// How far it goes to either side at medium temperature, g.
+    pub fn reach_g(&self) -> f64 {
+        (self.reading_g(1.0, 0.0) - self.reading_g(-1.0, 0.0)).abs() / 2.0
     }
 
     /// At the middle of the domain, Hz/g.

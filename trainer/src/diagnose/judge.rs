@@ -20,6 +20,7 @@ use crate::fit::dataset::InputScale;
 use crate::model::Model;
 use crate::progress::Progress;
 use crate::train::{EffectChoice, choose};
+use crate::yardstick::Yardstick;
 use firmware_core::effect::Role;
 use nalgebra::DVector;
 use std::collections::BTreeMap;
@@ -42,9 +43,15 @@ const SURELY_STRAINED: f64 = 100.0;
 /// Steps of the last fit of all findings together.
 const LAST_STEPS: usize = 12;
 
-pub(super) fn judge(model: &Model, campaign: &Campaign, progress: &dyn Progress) -> Result<Diagnosis, DiagnoseError> {
-    let mut case = case(model, campaign)?;
-    let mut start = in_model(model, campaign)?;
+/// In the units of `yardstick`, as `campaign` is.
+pub(super) fn judge(
+    model: &Model,
+    campaign: &Campaign,
+    yardstick: &Yardstick,
+    progress: &dyn Progress,
+) -> Result<Diagnosis, DiagnoseError> {
+    let mut case = case(model, campaign, yardstick)?;
+    let mut start = in_model(model, campaign, yardstick)?;
     case.layout.remember(&start);
     if !start.effects.is_empty() {
         // What retraining would make of the effects that the model has is not missing.
@@ -62,14 +69,19 @@ pub(super) fn judge(model: &Model, campaign: &Campaign, progress: &dyn Progress)
         found = foreseen;
     }
     let mut diagnosis = answer(&case, campaign, &start, found);
-    diagnosis.unobservable = unobservable(campaign, &screening);
+    diagnosis.unobservable = unobservable(campaign, &screening, &start);
     Ok(diagnosis)
 }
 
 /// Where a joint fit of these effects should begin: as a diagnosis of the static `model` would fit them, one beside
-/// the other. Effects that say nothing keep the start that they have.
-pub(super) fn starts(model: &Model, campaign: &Campaign, choices: &[EffectChoice]) -> Option<Vec<EffectChoice>> {
-    let case = case(model, campaign).ok()?;
+/// the other. Effects that say nothing keep the start that they have. In the units of `yardstick`, as `campaign` is.
+pub(super) fn starts(
+    model: &Model,
+    campaign: &Campaign,
+    yardstick: &Yardstick,
+    choices: &[EffectChoice],
+) -> Option<Vec<EffectChoice>> {
+    let case = case(model, campaign, yardstick).ok()?;
     let runs: Vec<_> = campaign.runs.iter().collect();
     let mut known = Known::NONE;
     let mut noises = case.noises(&case.left(&known), &case.stiff(&known), None);
@@ -91,16 +103,32 @@ pub(super) fn starts(model: &Model, campaign: &Campaign, choices: &[EffectChoice
 }
 
 /// Model and measurements before the judge.
-pub(super) fn case<'a>(model: &Model, campaign: &'a Campaign) -> Result<Case<'a>, DiagnoseError> {
-    let layout = Layout::new(campaign, scale(model), model.domain.max_gap_us);
-    let instrument = Instrument::new(model);
+pub(super) fn case<'a>(
+    model: &Model,
+    campaign: &'a Campaign,
+    yardstick: &Yardstick,
+) -> Result<Case<'a>, DiagnoseError> {
+    let instrument = Instrument::new(model, yardstick);
+    let max_gap_us = model.domain.max_gap_us;
+    let layout = Layout::new(campaign, scale(model), max_gap_us, instrument.reach_g(), yardstick.gravity);
     let sample_ug = instrument.sample_ug(&layout).ok_or(DiagnoseError::NoNoise)?;
     let ug_per_c = instrument.ug_per_c(&layout);
+    if !instrument.scale_factor_hz_per_g(&layout).is_finite() {
+        return Err(DiagnoseError::Numbers(FLAT));
+    }
+    if !(sample_ug.is_finite() && ug_per_c.is_finite()) {
+        return Err(DiagnoseError::Numbers(ABSURD));
+    }
     let freedom = compressed(&layout, &first_guess(sample_ug, ug_per_c), &instrument.freedom(&layout));
     let sum = SumChannel::new(&layout);
     let bare = Held::new(&layout, &instrument, sum.as_ref(), &Known::NONE);
     Ok(Case { layout, instrument, freedom, sum, bare, sample_ug, ug_per_c })
 }
+
+/// A model without a slope explains every signal equally badly.
+const FLAT: &str = "the model reads the same whatever the signal is: train it on a reference that varies, or state the \
+                    scale factor";
+const ABSURD: &str = "the residual is not a finite number: look at the campaign's extremes with `tempco inspect`";
 
 /// From integers to the model's inputs.
 pub(super) fn scale(model: &Model) -> InputScale {
@@ -113,14 +141,14 @@ pub(super) fn scale(model: &Model) -> InputScale {
 }
 
 /// The effects that the model has already.
-pub(super) fn in_model(model: &Model, campaign: &Campaign) -> Result<Known, DiagnoseError> {
+pub(super) fn in_model(model: &Model, campaign: &Campaign, yardstick: &Yardstick) -> Result<Known, DiagnoseError> {
     let runs: Vec<_> = campaign.runs.iter().collect();
     let mut known = Known::NONE;
     for (choice, effect) in EffectChoice::of(model).iter().zip(&model.effects) {
         let chosen = choose(choice, campaign, &runs)?;
         let value = |name: &str, start: f64| effect.parameters.get(name).copied().unwrap_or(start);
         let values: Vec<f64> = chosen.about.parameters.iter().map(|about| value(about.name, about.start)).collect();
-        known = known.with(&chosen, &values);
+        known = known.with(&chosen, &yardstick.coefficients_inside(chosen.about, &values));
     }
     Ok(known)
 }

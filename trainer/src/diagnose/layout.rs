@@ -6,6 +6,7 @@ use super::instrument::Known;
 use crate::campaign::{Campaign, Run};
 use crate::fit::dataset::{InputScale, mean};
 use crate::fit::neighbours::Neighbours;
+use crate::yardstick::STILL;
 use firmware_core::Memory;
 use std::ops::{Range, RangeInclusive};
 
@@ -89,14 +90,32 @@ pub(super) struct Layout<'a> {
     pub max_gap_us: u32,
     /// Place and end of the beginnings that are there in any cell.
     pub remembered: Vec<(usize, usize)>,
-    /// Index of the channel that says what lies across the input axis.
-    cross: Option<usize>,
+    /// What lies across the input axis, and how it is known.
+    across: Across,
+    /// Whether the reference never varies.
+    still: bool,
+}
+
+/// How it is known what lies across the input axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Across {
+    /// Index of the channel that says it.
+    channel: Option<usize>,
+    /// What 1 g is in the level's unit; none where nothing is left of gravity across.
+    gravity: Option<f64>,
+}
+
+impl Across {
+    /// At this level, g.
+    fn g(&self, level: f64) -> f64 {
+        self.gravity.map_or(1.0, |gravity| across_g(level / gravity))
+    }
 }
 
 impl<'a> Stretch<'a> {
-    fn new(run: &'a Run, rows: Vec<Range<usize>>, scale: &InputScale, cross: Option<usize>) -> Self {
+    fn new(run: &'a Run, rows: Vec<Range<usize>>, scale: &InputScale, across: Across) -> Self {
         let gathered = Gathered::new(&run.rows, rows.iter());
-        Self { run, cells: cells_of(run, rows, scale, cross), gathered }
+        Self { run, cells: cells_of(run, rows, scale, across), gathered }
     }
 
     /// Whether the sensor was moved during the run.
@@ -111,19 +130,23 @@ const SAME_POSITION_G: f64 = 1e-3;
 pub(super) const CROSS_CHANNEL: &str = "cross_g";
 
 impl<'a> Layout<'a> {
-    /// The cells of every run of the campaign.
-    pub fn new(campaign: &'a Campaign, scale: InputScale, max_gap_us: u32) -> Self {
-        let cross = campaign.channels.iter().position(|channel| channel == CROSS_CHANNEL);
+    /// The cells of every run of the campaign, whose reading goes to either side by `reach` and for which gravity is as
+    /// large as it says.
+    pub fn new(campaign: &'a Campaign, scale: InputScale, max_gap_us: u32, reach: f64, gravity: Option<f64>) -> Self {
+        let channel = campaign.channels.iter().position(|channel| channel == CROSS_CHANNEL);
+        let still = is_still(campaign, reach);
+        // At rest all lies across, or nothing of note changes there.
+        let across = Across { channel, gravity: gravity.filter(|_| !still) };
         let neighbours = Neighbours::of(&campaign.runs, &scale);
-        let stretch = |run: &'a Run| Stretch::new(run, neighbours.cells(run), &scale, cross);
+        let stretch = |run: &'a Run| Stretch::new(run, neighbours.cells(run), &scale, across);
         let stretches = campaign.runs.iter().map(stretch).collect();
-        Self { stretches, scale, max_gap_us, remembered: Vec::new(), cross }
+        Self { stretches, scale, max_gap_us, remembered: Vec::new(), across, still }
     }
 
     /// The same with a cell for every sample.
     pub fn by_sample(&self) -> Self {
         let rows = |run: &Run| (0..run.rows.len()).map(|row| row..row + 1).collect();
-        let stretch = |one: &Stretch<'a>| Stretch::new(one.run, rows(one.run), &self.scale, self.cross);
+        let stretch = |one: &Stretch<'a>| Stretch::new(one.run, rows(one.run), &self.scale, self.across);
         Self { stretches: self.stretches.iter().map(stretch).collect(), remembered: Vec::new(), ..*self }
     }
 
@@ -146,13 +169,12 @@ impl<'a> Layout<'a> {
 
     /// Whether the reference never varies.
     pub fn is_still(&self) -> bool {
-        let levels = || self.cells().map(|cell| cell.level_g);
-        levels().fold(f64::MIN, f64::max) - levels().fold(f64::MAX, f64::min) < SAME_POSITION_G
+        self.still
     }
 
     /// Whether the rig may have been turned over unseen: at one level it stands in two ways.
     pub fn may_turn_unseen(&self) -> bool {
-        self.cross.is_none() && !self.is_still()
+        self.across.channel.is_none() && self.across.gravity.is_some()
     }
 
     /// From the lowest to the highest temperature, °C.
@@ -170,22 +192,28 @@ impl<'a> Layout<'a> {
     }
 }
 
+fn is_still(campaign: &Campaign, reach: f64) -> bool {
+    let levels = || campaign.rows().map(|row| row.reference_g);
+    let (low, high) = (levels().fold(f64::INFINITY, f64::min), levels().fold(f64::NEG_INFINITY, f64::max));
+    high / 2.0 - low / 2.0 <= STILL * reach
+}
+
 /// What is left of gravity across the input axis, g.
 pub(super) fn across_g(level_g: f64) -> f64 {
     (1.0 - level_g * level_g).max(0.0).sqrt()
 }
 
-fn cells_of(run: &Run, rows: Vec<Range<usize>>, scale: &InputScale, cross: Option<usize>) -> Vec<Cell> {
+fn cells_of(run: &Run, rows: Vec<Range<usize>>, scale: &InputScale, across: Across) -> Vec<Cell> {
     let start_us = run.rows.first().map_or(0, |row| row.sample.time_us);
     let mut found: Vec<Cell> = Vec::new();
     let mut last_cross_ug = 0;
     for rows in rows {
         let datum = mean(&run.rows[rows.clone()], 0, scale);
         let times = run.rows[rows.clone()].iter().map(|row| (row.sample.time_us - start_us) as f64 * 1e-6);
-        let cross_ug = cross.map(|channel| run.rows[rows.start].sample.channels[channel]);
+        let cross_ug = across.channel.map(|channel| run.rows[rows.start].sample.channels[channel]);
         let level_g = datum.reference_g;
         let moved = |last: &Cell| (last.level_g - level_g).abs() > SAME_POSITION_G;
-        let turned = cross_ug.is_some_and(|cross_ug| (cross_ug - last_cross_ug).unsigned_abs() > 1000);
+        let turned = cross_ug.is_some_and(|cross_ug| cross_ug.abs_diff(last_cross_ug) > 1000);
         let time_s = times.sum::<f64>() / datum.weight;
         let since_s = (time_s - found.last().map_or(0.0, |last| last.time_s)).max(0.0);
         found.push(Cell {
@@ -196,7 +224,7 @@ fn cells_of(run: &Run, rows: Vec<Range<usize>>, scale: &InputScale, cross: Optio
             x: datum.x,
             t: datum.t,
             level_g,
-            cross_g: cross_ug.map_or_else(|| across_g(level_g), |ug| ug as f64 * 1e-6),
+            cross_g: cross_ug.map_or_else(|| across.g(level_g), |ug| ug as f64 * 1e-6),
             unseen_c: (rows.clone().map(|row| unseen_c(run, row).powi(2)).sum::<f64>() / datum.weight).sqrt(),
             beginnings: [FORGOTTEN; BEGINNINGS],
             new_node: false,
@@ -237,7 +265,8 @@ fn unseen_c(run: &Run, row: usize) -> f64 {
     let interval = |from: usize| {
         let (a, b) = (run.rows.get(from)?.sample, run.rows.get(from + 1)?.sample);
         let seconds = b.time_us.saturating_sub(a.time_us) as f64 * 1e-6;
-        Some((f64::from(b.temperature_uc - a.temperature_uc) * 1e-6, seconds.max(f64::MIN_POSITIVE)))
+        let warmer_c = (f64::from(b.temperature_uc) - f64::from(a.temperature_uc)) * 1e-6;
+        Some((warmer_c, seconds.max(f64::MIN_POSITIVE)))
     };
     match (row.checked_sub(1).and_then(interval), interval(row)) {
         (Some((before_c, before_s)), Some((after_c, after_s))) => {

@@ -57,7 +57,7 @@ fn reason(about: &About, excited: bool) -> String {
 }
 
 /// What this campaign can't show.
-pub(super) fn unobservable(campaign: &Campaign, screening: &Screening) -> Vec<Unobservable> {
+pub(super) fn unobservable(campaign: &Campaign, screening: &Screening, known: &Known) -> Vec<Unobservable> {
     let missing_channel =
         |about: &&&About| about.channel.is_some_and(|name| !campaign.channels.iter().any(|channel| channel == name));
     let no_channel = effect::ALL.iter().filter(missing_channel).map(|about| Unobservable {
@@ -76,5 +76,7 @@ pub(super) fn unobservable(campaign: &Campaign, screening: &Screening) -> Vec<Un
         effect: about.name.to_owned(),
         why: format!("the signal is measured in {}: it is no frequency", campaign.quantity.signal_unit),
     });
-    no_channel.chain(unfit).chain(hidden).chain(known_only).collect()
+    let all = no_channel.chain(unfit).chain(hidden).chain(known_only);
+    // What the model has was seen when it was trained.
+    all.filter(|one| !known.effects.iter().any(|effect| effect.about.name == one.effect)).collect()
 }

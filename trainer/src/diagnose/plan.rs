@@ -13,11 +13,12 @@ use super::instrument::Known;
 use super::judge::{case, in_model};
 use super::planned::joint;
 use super::whitening::{FLICKER, MOUNTING, NODE, NoiseModel, PARTS, POSE, POSITION, RUN, TURN, WALK, WANDER};
-use super::{DiagnoseError, candidate::with_channels};
+use super::{DiagnoseError, candidate::with_channels, yardstick};
 use crate::campaign::{Campaign, Quantity};
 use crate::fit::effects::Chosen;
 use crate::model::Model;
 use crate::progress::Progress;
+use crate::yardstick::Yardstick;
 use firmware_core::effect::{self, About};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -167,16 +168,18 @@ pub fn plan(
     if campaign.quantity.reference_unit != Quantity::default().reference_unit {
         return Err(PlanError::NoAccelerometer(campaign.quantity.reference_unit.clone()));
     }
-    let (reason, names) = open(diagnosis, effects)?;
-    let old = case(model, campaign)?;
-    let start = Start::new(&old, model, campaign, diagnosis, reason, &names)?;
+    let (reason, names) = open(model, diagnosis, effects)?;
+    let yardstick = yardstick(model, campaign)?;
+    let (campaign, diagnosis) = (&*yardstick.campaign(campaign), &inside(diagnosis, &yardstick));
+    let old = case(model, campaign, &yardstick)?;
+    let start = Start::new(&old, (model, campaign, &yardstick), diagnosis, reason, &names)?;
     let so_far = start.measured(&old, &campaign.channels)?;
     let judged = |recording: &Recording| {
         if progress.cancelled() {
             return Err(DiagnoseError::Cancelled);
         }
-        let joint = joint(model, campaign, &recording.campaign);
-        let mut new = case(model, &joint)?;
+        let joint = joint(model, campaign, &yardstick.campaign(&recording.campaign), &yardstick);
+        let mut new = case(model, &joint, &yardstick)?;
         // The next training will know how coarsely the recording is sampled, and how long its pauses are.
         new.layout.max_gap_us = new.layout.max_gap_us.max(recording.campaign.max_gap_us());
         // Planned rows have no noise to estimate it from.
@@ -188,13 +191,13 @@ pub fn plan(
     };
     let mut proposals = recordings.par_iter().map(judged).collect::<Result<Vec<_>, DiagnoseError>>()?;
     proposals.sort_by(|a, b| (b.decides.cmp(&a.decides)).then(b.sigma2_per_hour.total_cmp(&a.sigma2_per_hour)));
-    let hypotheses = start.hypotheticals.iter().map(Hypothetical::told).collect();
+    let hypotheses = start.hypotheticals.iter().map(|one| one.told(&yardstick)).collect();
     let so_far = start.named(&so_far);
     Ok(Plan { reason, hypotheses, so_far, decisive_sigma: DECISIVE_SIGMA, proposals })
 }
 
 /// What is to be told apart: what was asked, or what is ambiguous, or what can't be seen.
-fn open(diagnosis: &Diagnosis, effects: &[String]) -> Result<(Reason, Vec<String>), PlanError> {
+fn open(model: &Model, diagnosis: &Diagnosis, effects: &[String]) -> Result<(Reason, Vec<String>), PlanError> {
     if !effects.is_empty() {
         return Ok((Reason::Asked, effects.to_vec()));
     }
@@ -202,25 +205,27 @@ fn open(diagnosis: &Diagnosis, effects: &[String]) -> Result<(Reason, Vec<String
         let names = std::iter::once(&finding.effect).chain(&finding.confounded_with).cloned().collect();
         return Ok((Reason::Ambiguous, names));
     }
-    let on_device = |name: &&String| effect::about(name).is_some_and(About::is_on_device);
-    let unseen: Vec<String> = diagnosis.unobservable.iter().map(|one| &one.effect).filter(on_device).cloned().collect();
+    // Of what the model has, training has seen enough, be it in another campaign.
+    let is_known = |name: &str| model.effects.iter().any(|effect| effect.name == name);
+    let is_open = |name: &&String| effect::about(name).is_some_and(About::is_on_device) && !is_known(name);
+    let unseen: Vec<String> = diagnosis.unobservable.iter().map(|one| &one.effect).filter(is_open).cloned().collect();
     if unseen.is_empty() { Err(PlanError::NothingOpen) } else { Ok((Reason::Unseen, unseen)) }
 }
 
 impl Start {
     fn new(
         case: &Case,
-        model: &Model,
-        campaign: &Campaign,
+        (model, campaign, yardstick): (&Model, &Campaign, &Yardstick),
         diagnosis: &Diagnosis,
         reason: Reason,
         names: &[String],
     ) -> Result<Self, PlanError> {
-        let known = known(model, campaign, diagnosis, names)?;
+        let known = known((model, campaign, yardstick), diagnosis, names)?;
         let mut noises = Noises { delta: noise(diagnosis, case.ug_per_c), sum: None };
         let left = case.left(&known);
         noises.sum = case.sum_noise(&left, &case.stiff(&known), None);
         let shown = with_channels(campaign);
+        let usual = |about: &About| yardstick.coefficients_inside(about, &typical(about));
         let hypothetical = |name: &String| {
             let about = effect::about(name).filter(|about| about.is_on_device() && !about.takes_program());
             let about = about.ok_or_else(|| PlanError::UnknownEffect(name.clone()))?;
@@ -228,7 +233,7 @@ impl Start {
             let fit = shown.and_then(|effect| Some((effect, fitted(case, &known, &noises, effect)?)));
             Ok(match fit {
                 Some((effect, values)) => Hypothetical { effect: effect.clone(), values, fitted: true },
-                None => Hypothetical { effect: Chosen::of(about), values: typical(about), fitted: false },
+                None => Hypothetical { effect: Chosen::of(about), values: usual(about), fitted: false },
             })
         };
         let hypotheticals = names.iter().map(hypothetical).collect::<Result<Vec<_>, PlanError>>()?;
@@ -289,19 +294,23 @@ impl Hypothetical {
         Some(Known::NONE.with(&Chosen { channel, ..self.effect.clone() }, &self.values))
     }
 
-    fn told(&self) -> Hypothesis {
+    fn told(&self, yardstick: &Yardstick) -> Hypothesis {
         let about = self.effect.about;
-        let pairs = about.parameters.iter().zip(&self.values);
+        let pairs = about.parameters.iter().zip(yardstick.coefficients_outside(about, &self.values));
         let free = pairs.filter(|(parameter, _)| parameter.role != effect::Role::Origin);
-        let parameters = free.map(|(parameter, value)| (parameter.name.to_owned(), *value)).collect();
+        let parameters = free.map(|(parameter, value)| (parameter.name.to_owned(), value)).collect();
         Hypothesis { effect: about.name.to_owned(), parameters, fitted: self.fitted }
     }
 }
 
 /// What is in the model and what was found beside the hypotheses.
-fn known(model: &Model, campaign: &Campaign, diagnosis: &Diagnosis, names: &[String]) -> Result<Known, DiagnoseError> {
+fn known(
+    (model, campaign, yardstick): (&Model, &Campaign, &Yardstick),
+    diagnosis: &Diagnosis,
+    names: &[String],
+) -> Result<Known, DiagnoseError> {
     let is_open = |name: &str| names.iter().any(|other| other == name);
-    let mut known = in_model(model, campaign)?;
+    let mut known = in_model(model, campaign, yardstick)?;
     while let Some(index) = known.effects.iter().position(|effect| is_open(effect.about.name)) {
         known = known.without(index);
     }
@@ -315,6 +324,12 @@ fn known(model: &Model, campaign: &Campaign, diagnosis: &Diagnosis, names: &[Str
         known = known.with(effect, &effect.about.parameters.iter().map(value).collect::<Vec<_>>());
     }
     Ok(known)
+}
+
+/// A diagnosis in the units of the work.
+fn inside(diagnosis: &Diagnosis, yardstick: &Yardstick) -> Diagnosis {
+    let coefficient = |about: &About, name: &str, value: f64| yardstick.coefficient_inside(about, name, value);
+    diagnosis.clone().converted(|size| yardstick.inside(size), coefficient)
 }
 
 /// The noise that the diagnosis found.

@@ -6,6 +6,7 @@ use crate::campaign::{Campaign, Row, Run};
 use crate::fit::dataset::InputScale;
 use crate::metrics::mean;
 use crate::model::Model;
+use crate::yardstick::Yardstick;
 use nalgebra::{DMatrix, DVector, SVD};
 use protocol::limits::MAX_CHANNELS;
 
@@ -13,24 +14,25 @@ use protocol::limits::MAX_CHANNELS;
 const STEPS: usize = 12;
 
 /// Measurements and planned recording as one campaign. The measurements' channels come first and in their order.
-pub(super) fn joint(model: &Model, measured: &Campaign, planned: &Campaign) -> Campaign {
+pub(super) fn joint(model: &Model, measured: &Campaign, planned: &Campaign, yardstick: &Yardstick) -> Campaign {
     let surplus = planned.channels.iter().filter(|name| !measured.channels.contains(name));
     let channels: Vec<String> = measured.channels.iter().chain(surplus).take(MAX_CHANNELS).cloned().collect();
-    let sensor = Sensor::new(model, measured);
-    let old = filled(measured, &channels, planned).into_iter();
-    let new = filled(planned, &channels, measured).into_iter().map(|run| sensor.recorded(run));
+    let sensor = Sensor::new(model, measured, yardstick);
+    let gravity = yardstick.gravity.unwrap_or(1.0);
+    let old = filled(measured, &channels, planned, gravity).into_iter();
+    let new = filled(planned, &channels, measured, gravity).into_iter().map(|run| sensor.recorded(run));
     Campaign::new(old.chain(new).collect(), channels, measured.quantity.clone())
 }
 
 /// The runs with all channels; what a campaign lacks stood still, as `other` has it at the start.
-fn filled(campaign: &Campaign, channels: &[String], other: &Campaign) -> Vec<Run> {
+fn filled(campaign: &Campaign, channels: &[String], other: &Campaign, gravity: f64) -> Vec<Run> {
     let place = |campaign: &Campaign, name: &str| campaign.channels.iter().position(|channel| channel == name);
     let row = |row: &Row| {
         let mut filled = [0; MAX_CHANNELS];
         for (slot, name) in filled.iter_mut().zip(channels) {
             *slot = match place(campaign, name) {
                 Some(index) => row.sample.channels[index],
-                None if name == CROSS_CHANNEL => (across_g(row.reference_g) * 1e6) as i64,
+                None if name == CROSS_CHANNEL => (across_g(row.reference_g / gravity) * 1e6) as i64,
                 None => {
                     place(other, name).and_then(|index| Some(other.rows().next()?.sample.channels[index])).unwrap_or(0)
                 }
@@ -51,10 +53,10 @@ struct Sensor {
 }
 
 impl Sensor {
-    fn new(model: &Model, measured: &Campaign) -> Self {
+    fn new(model: &Model, measured: &Campaign, yardstick: &Yardstick) -> Self {
         let scale = super::judge::scale(model);
         let sum = sum_map(measured, &scale);
-        Self { scale, instrument: Instrument::new(model), sum }
+        Self { scale, instrument: Instrument::new(model, yardstick), sum }
     }
 
     /// The run with the frequencies that this sensor would have; their sum only if it was measured before.
@@ -63,7 +65,7 @@ impl Sensor {
             let [_, t] = self.scale.inputs(&row.sample);
             let x = self.input(row.reference_g, t);
             let away_hz = x * self.scale.delta_f_half_span_hz;
-            row.sample.delta_f_uhz = self.scale.delta_f_zero_uhz + (away_hz * 1e6).round() as i64;
+            row.sample.delta_f_uhz = self.scale.delta_f_zero_uhz.saturating_add((away_hz * 1e6).round() as i64);
             row.sample.sum_f_uhz = self.sum.as_ref().map(|sum| terms(x, t).dot(sum).round().max(0.0) as u64);
         }
         run

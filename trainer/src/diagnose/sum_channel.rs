@@ -118,9 +118,10 @@ impl SumChannel {
         for (stretch, cells) in layout.stretches.iter().zip(&self.cells) {
             for (cell, (slope, _)) in stretch.cells.iter().zip(cells) {
                 for pair in stretch.run.rows[cell.rows.clone()].windows(2) {
-                    let sum_uhz = |row: &Row| row.sample.sum_f_uhz.unwrap_or_default().cast_signed();
+                    let sum_uhz = |row: &Row| i128::from(row.sample.sum_f_uhz.unwrap_or_default());
                     let change = (sum_uhz(&pair[1]) - sum_uhz(&pair[0])) as f64 * 1e-6 * MHZ;
-                    let warmer_c = f64::from(pair[1].sample.temperature_uc - pair[0].sample.temperature_uc) * 1e-6;
+                    let temperature_c = |row: &Row| f64::from(row.sample.temperature_uc) * 1e-6;
+                    let warmer_c = temperature_c(&pair[1]) - temperature_c(&pair[0]);
                     steps.push((change - slope * warmer_c).abs());
                 }
             }
@@ -135,7 +136,8 @@ impl SumChannel {
 fn clock_shares(layout: &Layout, cells: &[Cell], deeds: &[Deed]) -> Vec<f64> {
     let delta_f_hz =
         |cell: &Cell| layout.scale.delta_f_zero_uhz as f64 * 1e-6 + cell.x * layout.scale.delta_f_half_span_hz;
-    let tells = |cell: &&Cell| delta_f_hz(cell).abs() >= LEAST_DELTA_F_HZ;
+    let least_hz = LEAST_DELTA_F * layout.scale.delta_f_half_span_hz;
+    let tells = |cell: &&Cell| delta_f_hz(cell).abs() >= least_hz;
     let share = |(cell, deed): (&Cell, &Deed)| tells(&cell).then(|| deed.delta_f_hz / delta_f_hz(cell));
     let told: Vec<Option<f64>> = cells.iter().zip(deeds).map(share).collect();
     let first = told.iter().flatten().next().copied().unwrap_or_default();
@@ -146,8 +148,8 @@ fn clock_shares(layout: &Layout, cells: &[Cell], deeds: &[Deed]) -> Vec<f64> {
     told.iter().scan(first, last).collect()
 }
 
-/// Below this the ratio means nothing.
-const LEAST_DELTA_F_HZ: f64 = 1.0;
+/// Below this, as a share of its half span, the difference is too small for a ratio.
+const LEAST_DELTA_F: f64 = 2e-3;
 
 fn sums(stretch: &super::layout::Stretch) -> Option<Vec<f64>> {
     let of = |cell: &Cell| {

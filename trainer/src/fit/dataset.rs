@@ -16,8 +16,10 @@ pub struct InputScale {
     pub temperature_half_span_c: f64,
 }
 
-/// Half spans below this are widened to it: a still sensor has no span to divide by.
-const LEAST_HALF_SPAN: f64 = 1e-3;
+/// Half spans of temperature below this are widened to it: a thermometer's noise is no span to divide by, °C.
+const LEAST_HALF_SPAN_C: f64 = 1e-3;
+/// And of the signal, be its unit as large as it will: one step of what holds it.
+const LEAST_HALF_SPAN: f64 = 1e-6;
 
 impl InputScale {
     /// Centres and half spans such that all samples lie within ±1; `None` without samples.
@@ -30,19 +32,19 @@ impl InputScale {
             let (f, t) = (sample.delta_f_uhz, sample.temperature_uc);
             (a.min(f), b.max(f), c.min(t), d.max(t))
         });
-        let half = |span: f64| (span / 2e6).max(LEAST_HALF_SPAN);
+        let half = |span: f64, least: f64| (span / 2e6).max(least);
         Some(Self {
             delta_f_zero_uhz: i64::midpoint(f_low, f_high),
-            delta_f_half_span_hz: half((f_high - f_low) as f64),
+            delta_f_half_span_hz: half(f_high.abs_diff(f_low) as f64, LEAST_HALF_SPAN),
             temperature_zero_uc: i32::midpoint(t_low, t_high),
-            temperature_half_span_c: half(f64::from(t_high) - f64::from(t_low)),
+            temperature_half_span_c: half(f64::from(t_high) - f64::from(t_low), LEAST_HALF_SPAN_C),
         })
     }
 
     /// Scaled inputs (x, t) of a sample.
     #[must_use]
     pub fn inputs(&self, sample: &Sample) -> [f64; 2] {
-        let delta_f_uhz = (sample.delta_f_uhz - self.delta_f_zero_uhz) as f64;
+        let delta_f_uhz = sample.delta_f_uhz.saturating_sub(self.delta_f_zero_uhz) as f64;
         let temperature_uc = f64::from(sample.temperature_uc) - f64::from(self.temperature_zero_uc);
         [delta_f_uhz * 1e-6 / self.delta_f_half_span_hz, temperature_uc * 1e-6 / self.temperature_half_span_c]
     }

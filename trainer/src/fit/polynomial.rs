@@ -95,6 +95,16 @@ impl Polynomial {
         Self { degree_x, degree_t, coefficients: &inverse * right, inverse }
     }
 
+    /// Values of another unit, and x of the other sign if `turned`.
+    pub(crate) fn scaled(mut self, factor: f64, turned: bool) -> Self {
+        let powers = self.degree_t + 1;
+        let sign = |k: usize| if turned && k / powers % 2 == 1 { -1.0 } else { 1.0 };
+        self.coefficients = DVector::from_fn(self.coefficients.len(), |k, _| self.coefficients[k] * sign(k) * factor);
+        let inverse = &self.inverse;
+        self.inverse = DMatrix::from_fn(inverse.nrows(), inverse.ncols(), |i, j| inverse[(i, j)] * sign(i) * sign(j));
+        self
+    }
+
     /// The value at (x, t), g.
     #[must_use]
     pub fn evaluate(&self, x: f64, t: f64) -> f64 {

@@ -57,6 +57,9 @@ impl Backprop {
     }
 }
 
+/// So many restarts are made at once, however many there are to be.
+const TOGETHER: usize = 64;
+
 /// Trains from every swarm.
 pub(super) fn search(task: &Task, settings: &Backprop) -> Result<Search, TrainError> {
     let problem = Problem::new(task);
@@ -66,8 +69,15 @@ pub(super) fn search(task: &Task, settings: &Backprop) -> Result<Search, TrainEr
         }
         restart(task, &problem, settings, index).map(Some)
     };
-    let candidates = (0..task.settings.restarts).into_par_iter().map(attempt).collect::<Result<Vec<_>, _>>()?;
-    Ok(Search::of(candidates.into_iter().flatten().collect()))
+    let mut candidates = Vec::new();
+    let mut next = 0;
+    while next < task.settings.restarts && !task.progress.cancelled() {
+        let end = task.settings.restarts.min(next.saturating_add(TOGETHER));
+        let some = (next..end).into_par_iter().map(attempt).collect::<Result<Vec<_>, _>>()?;
+        candidates.extend(some.into_iter().flatten());
+        next = end;
+    }
+    Ok(Search::of(candidates))
 }
 
 fn restart(task: &Task, problem: &Problem, settings: &Backprop, index: usize) -> Result<Candidate, TrainError> {
@@ -80,9 +90,9 @@ fn restart(task: &Task, problem: &Problem, settings: &Backprop, index: usize) ->
         Swarm::Improved(swarm) => firefly::improved(cost, &domain, swarm, &mut random, |_, _| go_on())?,
     };
     let descend = |weights: &[f64], gradient: &mut [f64]| problem.cost_and_gradient(weights, gradient);
-    let noise_g = Some(task.sigma_g * (problem.data.len() as f64 / problem.samples).sqrt());
+    let noise_g = Some(task.yardstick.outside(task.sigma_g) * (problem.data.len() as f64 / problem.samples).sqrt());
     let report = |iteration: usize, cost: f64, done: bool| {
-        let residual_g = (2.0 * cost).sqrt() * problem.unit_g;
+        let residual_g = (2.0 * cost).sqrt() * task.yardstick.outside(problem.unit_g);
         task.progress.restart(RestartNews { index, iteration, residual_g, noise_g, done });
     };
     let minimum = gradient_descent::minimise(descend, &first.best, &settings.descent, |iteration, cost| {

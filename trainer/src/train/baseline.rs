@@ -3,6 +3,7 @@
 use crate::campaign::{Row, Run};
 use crate::fit::dataset::InputScale;
 use crate::fit::polynomial::Polynomial;
+use crate::yardstick::Yardstick;
 
 /// The polynomial in Δf and T with its input scale.
 #[derive(Clone, Debug)]
@@ -14,6 +15,15 @@ pub struct Baseline {
 }
 
 impl Baseline {
+    /// Of the campaign's own units, where this is of the yardstick's.
+    pub(super) fn outside(self, yardstick: &Yardstick) -> Self {
+        let Self { polynomial, mut scale } = self;
+        if yardstick.is_turned() {
+            scale.delta_f_zero_uhz = scale.delta_f_zero_uhz.saturating_neg();
+        }
+        Self { polynomial: polynomial.scaled(yardstick.factor().recip(), yardstick.is_turned()), scale }
+    }
+
     /// Residuals of the polynomial on a run, g.
     #[must_use]
     pub fn residuals_g(&self, run: &Run) -> Vec<f64> {

@@ -37,6 +37,8 @@ const LIMITS: Limits = Limits { iterations: 200, decrease: 1e-5, step: 1e-9 };
 const REFINEMENTS: usize = 6;
 /// So many of the best restarts are trained on: which of them is best changes when data are believed more.
 const LEADERS: usize = 5;
+/// So many restarts are made before those that don't lead are forgotten.
+const TOGETHER: usize = 16;
 /// Scatter that falls to no less than this share has settled.
 const SETTLED: f64 = 0.95;
 
@@ -58,9 +60,17 @@ pub(super) fn search(task: &Task) -> Search {
         let start = random_start(&mut stream(task.settings.seed, index as u64));
         descend(task, &first, still.clone(), index, &start)
     };
-    let trials: Vec<Trial> = (0..task.settings.restarts).into_par_iter().filter_map(attempt).collect();
-    let restarts = trials.iter().map(|trial| trial.restart).collect();
-    let best = with_effects(task, &first, leading(trials));
+    // Some at a time: what a trial leaves is as large as the data, and only the leaders' is needed.
+    let (mut restarts, mut leaders) = (Vec::new(), Vec::new());
+    let mut next = 0;
+    while next < task.settings.restarts && !task.progress.cancelled() {
+        let end = task.settings.restarts.min(next.saturating_add(TOGETHER));
+        let trials: Vec<Trial> = (next..end).into_par_iter().filter_map(attempt).collect();
+        restarts.extend(trials.iter().map(|trial| trial.restart));
+        leaders = leading(leaders.into_iter().chain(trials).collect());
+        next = end;
+    }
+    let best = with_effects(task, &first, leaders);
     Search { restarts, best: refined(task, first, best) }
 }
 
@@ -145,10 +155,10 @@ fn descend(task: &Task, problem: &Problem, rows: impl Rows, index: usize, start:
     }
     let weigh = |of: fn(&ValueRow) -> f64| rows.groups().iter().flat_map(|group| &group.rows).map(of).sum::<f64>();
     let weight = weigh(|row| row.weight);
-    let noise_g = Some(task.sigma_g * (weigh(|row| row.weight / row.samples) / weight).sqrt());
+    let noise_g = Some(task.yardstick.outside(task.sigma_g) * (weigh(|row| row.weight / row.samples) / weight).sqrt());
     let mut network = NetworkProblem::new(rows, &problem.anchors, problem.prior);
     let report = |iteration, cost: f64, done| {
-        let residual_g = (2.0 * cost / weight).sqrt() * problem.unit_g;
+        let residual_g = (2.0 * cost / weight).sqrt() * task.yardstick.outside(problem.unit_g);
         task.progress.restart(RestartNews { index, iteration, residual_g, noise_g, done });
     };
     let minimum = minimise(&mut network, start, &LIMITS, |iteration, cost| {

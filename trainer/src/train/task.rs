@@ -12,6 +12,7 @@ use crate::fit::polynomial::{MOST_T, Polynomial};
 use crate::model::{Model, ModelDomain, ModelEffect, ModelNetwork, ModelScaling, Provenance, Units};
 use crate::noise::{Components, Mean, rms, sample_sigma_g};
 use crate::progress::Progress;
+use crate::yardstick::Yardstick;
 use firmware_core::effect::{self, Parameter};
 use protocol::Weights;
 
@@ -26,14 +27,18 @@ pub(super) struct Task<'a> {
     /// Noise of one sample, g.
     pub sigma_g: f64,
     pub settings: &'a TrainSettings,
+    /// The way back to the campaign's units.
+    pub yardstick: Yardstick,
     pub progress: &'a dyn Progress,
 }
 
 impl<'a> Task<'a> {
+    /// In the units of `yardstick`, as `campaign` and `settings` are.
     pub fn new(
         campaign: &'a Campaign,
         split: &Split,
         settings: &'a TrainSettings,
+        yardstick: Yardstick,
         progress: &'a dyn Progress,
     ) -> Result<Self, TrainError> {
         settings.check()?;
@@ -64,6 +69,7 @@ impl<'a> Task<'a> {
             polynomial,
             sigma_g: sigma_g.unwrap_or(0.0).max(LEAST_SIGMA_G),
             settings,
+            yardstick,
             progress,
         })
     }
@@ -78,8 +84,20 @@ impl<'a> Task<'a> {
         Components::estimate(self.sigma_g, &self.data.iter().map(mean).collect::<Vec<_>>())
     }
 
+    /// The model of `campaign`, in its own units.
     pub fn model(&self, campaign: &Campaign, split: &Split, best: &Candidate) -> Model {
-        let Weights { input, bias, output, output_bias } = best.weights;
+        let Weights { mut input, bias, mut output, mut output_bias } = best.weights;
+        let [constant, by_x, by_t, by_xt] = best.line_g;
+        let turn = if self.yardstick.is_turned() { -1.0 } else { 1.0 };
+        input.iter_mut().for_each(|[x, _]| *x *= turn as f32);
+        let line_g = [constant, turn * by_x, by_t, turn * by_xt].map(|value| (value / self.yardstick.factor()) as f32);
+        // What is negative is the network, not its unit.
+        let negate = self.yardstick.factor().signum() as f32;
+        output.iter_mut().chain([&mut output_bias]).for_each(|weight| *weight *= negate);
+        let zero_uhz = self.scale.delta_f_zero_uhz;
+        let effect = |(chosen, values): (&Chosen, &Vec<f64>)| {
+            fitted(chosen, &self.yardstick.coefficients_outside(chosen.about, values), campaign)
+        };
         Model {
             format: Model::FORMAT,
             serial: self.settings.serial.clone(),
@@ -89,17 +107,17 @@ impl<'a> Task<'a> {
                 reference: campaign.quantity.reference_unit.clone(),
             },
             scaling: ModelScaling {
-                delta_f_zero_uhz: self.scale.delta_f_zero_uhz,
+                delta_f_zero_uhz: if self.yardstick.is_turned() { zero_uhz.saturating_neg() } else { zero_uhz },
                 delta_f_gain_per_hz: self.scale.delta_f_half_span_hz.recip() as f32,
                 temperature_zero_uc: self.scale.temperature_zero_uc,
                 temperature_gain_per_c: self.scale.temperature_half_span_c.recip() as f32,
-                line_g: best.line_g.map(|value| value as f32),
-                output_g: best.output_g as f32,
+                line_g,
+                output_g: self.yardstick.outside(best.output_g) as f32,
             },
             domain: self.domain(),
             network: ModelNetwork { input, bias, output, output_bias },
             channels: self.channels(campaign),
-            effects: self.effects.iter().zip(&best.coefficients.values).map(|(e, v)| fitted(e, v, campaign)).collect(),
+            effects: self.effects.iter().zip(&best.coefficients.values).map(effect).collect(),
         }
     }
 
@@ -129,7 +147,7 @@ impl<'a> Task<'a> {
             training_runs: names(&split.training),
             held_out_runs: names(&split.held_out),
             training_residual: 0.0,
-            scale_factor_hz_per_g: self.settings.scale_factor_hz_per_g,
+            scale_factor_hz_per_g: None,
             read_as: campaign.read_as.clone(),
         }
     }
@@ -139,8 +157,9 @@ impl<'a> Task<'a> {
         let half_f_uhz = (self.scale.delta_f_half_span_hz * 1e6 * (1.0 + DOMAIN_MARGIN)).ceil() as i64;
         let half_t_uc = (self.scale.temperature_half_span_c * 1e6 * (1.0 + DOMAIN_MARGIN)).ceil() as i32;
         let (f, t) = (self.scale.delta_f_zero_uhz, self.scale.temperature_zero_uc);
+        let f = if self.yardstick.is_turned() { f.saturating_neg() } else { f };
         ModelDomain {
-            delta_f_uhz: [f - half_f_uhz, f + half_f_uhz],
+            delta_f_uhz: [f.saturating_sub(half_f_uhz), f.saturating_add(half_f_uhz)],
             temperature_uc: [t.saturating_sub(half_t_uc), t.saturating_add(half_t_uc)],
             max_gap_us: self.max_gap_us,
         }
