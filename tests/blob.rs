@@ -183,7 +183,7 @@ fn a_calibration_that_cannot_be_run_is_refused_with_its_reason() {
     let surplus = LoadError::Program { effect: 1, why: ProgramError::Surplus };
     let unsound = LoadError::Program { effect: 22, why: ProgramError::Operand };
     let unnamed = LoadError::Channel { effect: 22 };
-    let table: [(&str, Spoil, LoadError); 17] = [
+    let table: [(&str, Spoil, LoadError); 19] = [
         ("unknown effect", |b| b.terms[0].effect = 999, unknown),
         ("too few coefficients", |b| b.terms[0].parameters.clear(), few),
         ("too many coefficients", |b| b.terms[0].parameters.push(1.0).expect("room"), many),
@@ -201,6 +201,8 @@ fn a_calibration_that_cannot_be_run_is_refused_with_its_reason() {
         ("outputs beyond f32", |b| b.weights = Weights::from_array(&[f32::MAX; 41]), LoadError::Number),
         ("no temperatures", |b| b.domain.temperature_uc = (5, 5), LoadError::Domain),
         ("no frequencies", |b| b.domain.delta_f_uhz = (1, 0), LoadError::Domain),
+        ("one frequency", |b| b.domain.delta_f_uhz = (1, 1), LoadError::Domain),
+        ("a temperature gain of zero", |b| b.scaling.temperature_gain_per_c = 0.0, LoadError::Number),
     ];
     let mut bench = Bench::new();
     for (what, spoil, expected) in table {

@@ -1,23 +1,35 @@
 //! What must hold for any bytes at all. `fuzz/` searches for bytes for which it does not, `tests/fuzz_corpus.rs` tries
 //! the corpus and mutations of it.
 
+#[cfg(feature = "training")]
+mod files;
+
 use crate::example;
 use firmware_core::{Compensator, Network};
 use protocol::limits::MAX_BLOB;
-use protocol::{Blob, Decoder, Envelope, Reading, Request, Response, Status, crc32, encode_frame};
+use protocol::{Blob, Decoder, Envelope, Reading, Request, Response, Sample, Status, crc32, encode_frame};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::cell::RefCell;
-use tempfile::TempDir;
-use trainer::campaign::{Campaign, ReadOptions};
-use trainer::expression::{Expression, print};
+
+#[cfg(feature = "training")]
+pub use files::{campaign, expression, intel_hex, mapping, model, scenario, sealed_truth};
 
 /// A property of any bytes; it panics where it does not hold.
 pub type Target = fn(&[u8]);
 
 /// Every target with the name of its corpus.
-pub const TARGETS: [(&str, Target); 4] =
-    [("frame", frame), ("blob", blob), ("campaign", campaign), ("expression", expression)];
+#[cfg(feature = "training")]
+pub const TARGETS: [(&str, Target); 9] = [
+    ("frame", frame),
+    ("blob", blob),
+    ("campaign", campaign),
+    ("mapping", mapping),
+    ("expression", expression),
+    ("model", model),
+    ("scenario", scenario),
+    ("sealed_truth", sealed_truth),
+    ("intel_hex", intel_hex),
+];
 
 /// Whatever comes along the line: refused, or a message that survives being sent again.
 ///
@@ -95,50 +107,15 @@ fn stored_and_run(mut blob: Blob) {
         blob.proof = proof;
     }
     if let Ok(mut compensator) = Compensator::load(&blob) {
-        for sample in example::samples(60) {
-            let reading = compensator.compensate(&sample);
-            let none = reading.acceleration_g.to_bits() == Reading::NO_NUMBER.to_bits();
-            let says_why = reading.status.intersects(Status::FATAL);
-            assert!(if none { says_why } else { reading.acceleration_g.is_finite() }, "{sample:?}: {reading:?}");
-        }
+        readings_are_numbers_or_say_why(&mut compensator, &example::samples(60));
     }
 }
 
-thread_local! {
-    static FOLDER: RefCell<TempDir> = RefCell::new(tempfile::tempdir().expect("a folder for temporary files"));
-}
-
-/// Whatever a campaign's file contains: refused with a sentence, or rows of usable numbers in rising time.
-///
-/// # Panics
-/// If that does not hold.
-pub fn campaign(bytes: &[u8]) {
-    let path = FOLDER.with_borrow(|folder| folder.path().join("campaign.csv"));
-    std::fs::write(&path, bytes).expect("the temporary folder is writable");
-    match Campaign::read(&[path], &ReadOptions::default()) {
-        Ok(campaign) => {
-            assert!(campaign.rows().all(|row| row.reference_g.is_finite()));
-            for run in &campaign.runs {
-                assert!(run.rows.windows(2).all(|pair| pair[0].sample.time_us < pair[1].sample.time_us));
-            }
-        }
-        Err(error) => assert!(error.to_string().len() > 20, "{error}"),
-    }
-}
-
-/// Whatever a user writes as an effect: refused with a place within it, or a program that runs and can be written out.
-///
-/// # Panics
-/// If that does not hold.
-pub fn expression(bytes: &[u8]) {
-    let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let channels = ["supply_v", "pressure_pa"].map(str::to_owned);
-    match Expression::parse(text, &channels) {
-        Ok(expression) => {
-            let printed = print(expression.code(), &channels).expect("a sound program has a text");
-            let again = Expression::parse(&printed, &channels).expect("what was printed is read");
-            assert_eq!(again.code(), expression.code(), "{text} became {printed}");
-        }
-        Err(error) => assert!(error.column >= 1 && error.column <= text.chars().count() + 1, "{error}"),
+fn readings_are_numbers_or_say_why(compensator: &mut Compensator, samples: &[Sample]) {
+    for sample in samples {
+        let reading = compensator.compensate(sample);
+        let none = reading.acceleration_g.to_bits() == Reading::NO_NUMBER.to_bits();
+        let says_why = reading.status.intersects(Status::FATAL);
+        assert!(if none { says_why } else { reading.acceleration_g.is_finite() }, "{sample:?}: {reading:?}");
     }
 }
