@@ -43,9 +43,9 @@ pub fn mapping(bytes: &[u8]) {
     let path = file("table.csv", TABLE);
     let usual = [("time_s", "t [ms] * 0.001"), ("delta_f_hz", "f"), ("temperature_c", "T"), ("reference_g", "ref")];
     for name in ["time_s", "delta_f_hz", "temperature_c", "reference_g", "sum_f_hz", "age_days", "supply_v", "run"] {
-        let mut map: Vec<_> = usual.map(|(name, text)| (name.to_owned(), text.to_owned())).to_vec();
-        map.push((name.to_owned(), text.to_owned()));
-        usable_or_refused(path.clone(), &ReadOptions { map, ..ReadOptions::default() });
+        // Of two mappings to one name the later one counts.
+        let map = usual.into_iter().chain([(name, text)]).map(|(name, text)| (name.to_owned(), text.to_owned()));
+        usable_or_refused(path.clone(), &ReadOptions { map: map.collect(), ..ReadOptions::default() });
     }
 }
 
