@@ -15,16 +15,16 @@ impl Table {
 
     /// A table whose number of columns is only known at run time; the first row is the header.
     pub fn of(rows: Vec<Vec<String>>) -> Self {
-        Self { rows: rows.into_iter().map(shown).collect() }
+        Self { rows: rows.iter().map(|cells| shown(cells)).collect() }
     }
 
     pub fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.rows.push(shown(cells.into()));
+        self.rows.push(shown(&cells));
     }
 }
 
 /// A name from elsewhere must not break the line that it stands in.
-fn shown(cells: Vec<String>) -> Vec<String> {
+fn shown(cells: &[String]) -> Vec<String> {
     cells.iter().map(|cell| visible_word(cell).into_owned()).collect()
 }
 

@@ -190,7 +190,7 @@ pub enum ModelError {
         /// The file.
         path: PathBuf,
         /// Why.
-        source: DeviceLimit,
+        source: Box<DeviceLimit>,
     },
     /// The model doesn't fit a device.
     #[error("the model can't be put on a device: {0}")]

@@ -10,7 +10,7 @@ mod units;
 use crate::campaign::{Campaign, Row};
 use crate::model::Model;
 use crate::train::{EffectChoice, TrainSettings};
-use firmware_core::effect::{self, About};
+use firmware_core::effect::{self, About, Parameter};
 use firmware_core::{Network, Scale};
 use std::borrow::Cow;
 use units::{exponent, units_per_g};
@@ -30,17 +30,16 @@ pub(crate) struct Yardstick {
 pub(crate) const STILL: f64 = 0.01;
 /// What the reading of a sensor at rest is scaled to do, g: as such sensors do over temperature.
 const DRIFT_G: f64 = 0.01;
+/// A model tells the size of its campaign within this factor.
+const UNSURE: f64 = 2.0;
 /// A half span between these is left as it is, g.
 const ORDINARY_G: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 
 impl Yardstick {
     /// For a diagnosis of `model`; none if numbers aren't finite.
     pub fn of_model(model: &Model, campaign: &Campaign) -> Option<Self> {
-        let (network, scale) = (Network::<f64>::new(&model.weights()), Scale::new(&model.scaling.to_wire()));
-        let reading = |x: f64| scale.reading_g(x, 0.0, network.evaluate(x, 0.0));
-        let reach = (reading(1.0) - reading(-1.0)).abs() / 2.0;
-        let expressions = model.effects.iter().filter_map(|effect| effect.expression.as_deref());
-        Self::new(campaign, Some(reach), expressions.collect())
+        let expressions: Vec<&str> = model.effects.iter().filter_map(|effect| effect.expression.as_deref()).collect();
+        Self::new(campaign, Some(reach(model)), &expressions)
     }
 
     /// For training: signals rise with references, and mostly lie above zero, as far as that is a matter of sign.
@@ -48,7 +47,7 @@ impl Yardstick {
         let reach = settings.scale_factor_hz_per_g.map(|stated| half_span(campaign, signal) / stated.abs());
         let expressions: Vec<&str> =
             settings.effects.iter().filter_map(|choice| choice.expression.as_deref()).collect();
-        let mut yardstick = Self::new(campaign, reach, expressions.clone())?;
+        let mut yardstick = Self::new(campaign, reach, &expressions)?;
         if expressions.is_empty() {
             let rises = settings.scale_factor_hz_per_g.unwrap_or_else(|| covariance(campaign)) >= 0.0;
             let is_above = middle(campaign, signal) >= 0.0;
@@ -65,7 +64,7 @@ impl Yardstick {
     }
 
     /// `reach` is how far the reading goes to either side.
-    fn new(campaign: &Campaign, reach: Option<f64>, expressions: Vec<&str>) -> Option<Self> {
+    fn new(campaign: &Campaign, reach: Option<f64>, expressions: &[&str]) -> Option<Self> {
         let per_g = units_per_g(&campaign.quantity.reference_unit);
         let half = half_span(campaign, |row| row.reference_g);
         let factor = if expressions.iter().any(|text| reads_level(text)) {
@@ -152,6 +151,20 @@ impl Yardstick {
         pairs.map(|(parameter, value)| value * factor.powi(exponent(about, parameter.name)) + 0.0).collect()
     }
 
+    /// What training multiplied references with to make `model`, as far as the model tells: the least and the greatest.
+    /// Its coefficients were bounded in the units of the work.
+    pub fn factors_of(model: &Model) -> [f64; 2] {
+        let reach = reach(model);
+        let about = |factor: f64| [factor / UNSURE, factor * UNSURE];
+        if model.provenance.scale_factor_hz_per_g.is_some() {
+            return about(DRIFT_G / reach);
+        }
+        match units_per_g(&model.units.reference) {
+            Some(per_g) if ORDINARY_G.contains(&(reach / per_g)) => [per_g.recip(); 2],
+            _ => about(reach.recip()),
+        }
+    }
+
     /// Settings in the units of the work.
     pub fn settings(&self, settings: &TrainSettings) -> TrainSettings {
         let sign = if self.turned { -1.0 } else { 1.0 };
@@ -180,6 +193,20 @@ impl Yardstick {
         };
         choices.iter().map(converted).collect()
     }
+}
+
+/// The bounds of a coefficient of `model` in the model's own units.
+pub(crate) fn bounds_of(model: &Model, about: &About, parameter: &Parameter) -> (f64, f64) {
+    let power = -exponent(about, parameter.name);
+    let widest = Yardstick::factors_of(model).map(|factor| factor.powi(power)).into_iter().fold(0.0, f64::max);
+    (parameter.low * widest, parameter.high * widest)
+}
+
+/// How far a model's reading goes to either side over what it was trained on.
+fn reach(model: &Model) -> f64 {
+    let (network, scale) = (Network::<f64>::new(&model.weights()), Scale::new(&model.scaling.to_wire()));
+    let reading = |x: f64| scale.reading_g(x, 0.0, network.evaluate(x, 0.0));
+    (reading(1.0) - reading(-1.0)).abs() / 2.0
 }
 
 fn signal(row: &Row) -> f64 {

@@ -73,14 +73,14 @@ impl Reproduce {
         let mut judged = Vec::new();
         if all || self.figures {
             trials = searches::search(self.seeds, self.seed)?;
-            self.draw(&mut files, "figure-3-schaffer.svg", evolution_plot::evolution("Schaffer", &trials)?)?;
-            self.draw(&mut files, "figure-4-rastrigin.svg", evolution_plot::evolution("Rastrigin", &trials)?)?;
-            self.draw(&mut files, "success-rates.svg", rates_plot::rates(&trials)?)?;
+            self.draw(&mut files, "figure-3-schaffer.svg", &evolution_plot::evolution("Schaffer", &trials)?)?;
+            self.draw(&mut files, "figure-4-rastrigin.svg", &evolution_plot::evolution("Rastrigin", &trials)?)?;
+            self.draw(&mut files, "success-rates.svg", &rates_plot::rates(&trials)?)?;
             self.say(|| searches::text(&trials, self.seed) + &claims::text(&trials))?;
         }
         if all || self.tables {
             judged = campaigns::judge(self, &mut files)?;
-            self.draw(&mut files, "between-the-levels.svg", sweep_plot::sweep(&judged)?)?;
+            self.draw(&mut files, "between-the-levels.svg", &sweep_plot::sweep(&judged)?)?;
             self.say(|| tables::text(&judged, self))?;
         }
         self.finish(&trials, &judged, &files)?;
@@ -100,7 +100,7 @@ impl Reproduce {
     }
 
     /// Writes a picture.
-    fn draw(&self, files: &mut Vec<PathBuf>, name: &str, svg: String) -> Result<(), Failure> {
+    fn draw(&self, files: &mut Vec<PathBuf>, name: &str, svg: &str) -> Result<(), Failure> {
         let path = self.path(name);
         self.place(name, Kind::Picture).write(svg.as_bytes())?;
         files.push(path);

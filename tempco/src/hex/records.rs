@@ -17,9 +17,12 @@ pub fn text(pieces: &[(u32, &[u8])]) -> Result<String, WriterError> {
     ihex::create_object_file_representation(&records)
 }
 
+/// Bytes that lie one behind the other, and where they begin.
+pub type Piece = (u32, Vec<u8>);
+
 /// Every piece of a text, its address and its bytes up to the next gap; or the line that is wrong, and why.
-pub fn pieces(text: &str) -> Result<Vec<(u32, Vec<u8>)>, (usize, ReaderError)> {
-    let mut pieces: Vec<(u32, Vec<u8>)> = Vec::new();
+pub fn pieces(text: &str) -> Result<Vec<Piece>, (usize, ReaderError)> {
+    let mut pieces: Vec<Piece> = Vec::new();
     let mut base = 0_u32;
     for (index, record) in ihex::Reader::new(text).enumerate() {
         match record.map_err(|error| (index + 1, error))? {

@@ -115,65 +115,80 @@ fn change(table: &mut Table, column: usize, change: impl Fn(f64) -> f64) {
 }
 
 fn spoil(table: &mut Table, random: &mut Random) -> &'static str {
-    let (column, row) = (random.below(table.header.len()), random.below(table.rows.len()));
-    match random.below(14) {
+    match random.below(7) {
+        0..=1 => spoil_cells(table, random),
+        2..=4 => spoil_column(table, random),
+        _ => spoil_rows(table, random),
+    }
+}
+
+fn spoil_cells(table: &mut Table, random: &mut Random) -> &'static str {
+    if random.below(2) == 0 {
+        let (row, column) = (random.below(table.rows.len()), random.below(table.header.len()));
+        set(table, row, column, random.of(&NUMBERS));
+        return "one cell";
+    }
+    for _ in 0..5 {
+        let (row, column) = (random.below(table.rows.len()), 2 + random.below(5));
+        set(table, row, column, random.of(&["0", "85", "-127", "1e5", "1e30", "-1e9", "1e-30"]));
+    }
+    "some cells"
+}
+
+fn spoil_column(table: &mut Table, random: &mut Random) -> &'static str {
+    let column = random.below(table.header.len());
+    match random.below(6) {
         0 => {
-            set(table, row, column, random.of(&NUMBERS));
-            "one cell"
-        }
-        1 => {
-            (0..5).for_each(|_| {
-                let (row, column) = (random.below(table.rows.len()), 2 + random.below(5));
-                set(table, row, column, random.of(&["0", "85", "-127", "1e5", "1e30", "-1e9", "1e-30"]));
-            });
-            "some cells"
-        }
-        2 => {
             let scale = 10_f64.powi(random.below(49) as i32 - 24);
             change(table, column, |number| number * scale);
             "a column scaled"
         }
-        3 => {
+        1 => {
             change(table, column, |number| -number);
             "a column negated"
         }
-        4 => {
+        2 => {
             let shift = [1e3, 1.7e9, -1e6, 1e12, 273.15, 1e18][random.below(6)];
             change(table, column, |number| number + shift);
             "a column shifted"
         }
-        5 => {
+        3 => {
             let value = random.of(&["0", "1", "-1", "1e-9", "1e9"]);
             (0..table.rows.len()).for_each(|row| set(table, row, column, value));
             "a column constant"
         }
-        6 => {
+        4 => {
             let other = random.below(table.header.len());
             table.header.swap(column, other);
             "two names swapped"
         }
-        7 => {
+        _ => {
             table.header[column] = random.of(&HEADERS).to_owned();
             "a name spoilt"
         }
-        8 => {
-            let other = random.below(table.rows.len());
+    }
+}
+
+fn spoil_rows(table: &mut Table, random: &mut Random) -> &'static str {
+    let (row, other) = (random.below(table.rows.len()), random.below(table.rows.len()));
+    match random.below(6) {
+        0 => {
             table.rows.swap(row, other);
             "rows swapped"
         }
-        9 => {
+        1 => {
             table.rows = table.rows.iter().flat_map(|row| [row.clone(), row.clone()]).collect();
             "rows doubled"
         }
-        10 => {
-            table.rows.truncate(row);
+        2 => {
+            table.rows.truncate(row.max(1));
             "cut short"
         }
-        11 => {
+        3 => {
             table.rows.iter_mut().for_each(|row| drop(row.pop()));
             "the last column without values"
         }
-        12 => {
+        4 => {
             table.rows.iter_mut().enumerate().for_each(|(index, row)| row[0] = format!("run-{}", index / 3));
             "a run for every three rows"
         }

@@ -1,6 +1,7 @@
 //! A model file, read strictly: what a person mistyped is told with its line, and never taken for something else.
 
 use super::{DeviceLimit, Model, ModelEffect, ModelError};
+use crate::yardstick::bounds_of;
 use firmware_core::effect::{self, Parameter, Role};
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer, Error};
@@ -33,24 +34,27 @@ impl Model {
             return Err(ModelError::Format { path: path(), line, found, supported: Self::FORMAT });
         }
         let model: Self = toml::from_str(text).map_err(syntax)?;
-        if let Some((index, parameter, value)) = model.beyond_bounds() {
+        if let Some((index, parameter, value, bounds)) = model.beyond_bounds() {
             let effect = model.effects[index].name.clone();
-            let (line, bounds) = (line_of(text, index, parameter.name), (parameter.low, parameter.high));
-            return Err(ModelError::Bound { path: path(), line, effect, parameter: parameter.name, value, bounds });
+            let (line, parameter) = (line_of(text, index, parameter.name), parameter.name);
+            return Err(ModelError::Bound { path: path(), line, effect, parameter, value, bounds });
         }
-        model.to_blob().map_err(|source| ModelError::Unusable { path: path(), source })?;
+        model.to_blob().map_err(|source| ModelError::Unusable { path: path(), source: Box::new(source) })?;
         Ok(model)
     }
 
-    /// The first coefficient that makes no physical sense: its effect's index, what it is, its value.
-    fn beyond_bounds(&self) -> Option<(usize, &'static Parameter, f64)> {
+    /// The first coefficient that makes no physical sense: its effect's index, what it is, its value, its bounds.
+    fn beyond_bounds(&self) -> Option<(usize, &'static Parameter, f64, (f64, f64))> {
         let of = |(index, effect): (usize, &ModelEffect)| {
             let about = effect::about(&effect.name)?;
             // Where a channel counts from is measured, whatever the channel is.
             let judged = about.parameters.iter().filter(|parameter| parameter.role != Role::Origin);
-            let mut values = judged.filter_map(|about| Some((about, *effect.parameters.get(about.name)?)));
-            let (parameter, value) = values.find(|(about, value)| !(about.low..=about.high).contains(value))?;
-            Some((index, parameter, value))
+            let mut values = judged.filter_map(|parameter| {
+                Some((parameter, *effect.parameters.get(parameter.name)?, bounds_of(self, about, parameter)))
+            });
+            let beyond = |(_, value, (low, high)): &(_, f64, (f64, f64))| !(low..=high).contains(&value);
+            let (parameter, value, bounds) = values.find(beyond)?;
+            Some((index, parameter, value, bounds))
         };
         self.effects.iter().enumerate().find_map(of)
     }
@@ -129,7 +133,8 @@ impl ModelError {
             Self::Bound { effect, .. } => {
                 format!("`tempco effects {effect}` explains its parameters; `tempco add` finds them from measurements")
             }
-            Self::Unusable { source, .. } | Self::Device(source) => return source.help().map(str::to_owned),
+            Self::Unusable { source, .. } => return source.help().map(str::to_owned),
+            Self::Device(source) => return source.help().map(str::to_owned),
         })
     }
 }
@@ -212,6 +217,31 @@ mod tests {
             let wrong = text.replace("tau_s = 40.0", &format!("tau_s = {value}"));
             let told = refused(&wrong);
             assert!(told.starts_with(&format!("m.toml:{line}: effect `thermal-lag`: tau_s = ")), "{told}");
+        }
+    }
+
+    #[test]
+    fn bounds_follow_the_unit_of_the_reference() {
+        let mut model = model();
+        model.provenance.scale_factor_hz_per_g = None;
+        let k2 = |value: f64| ModelEffect {
+            name: "second-order".to_owned(),
+            channel: None,
+            expression: None,
+            parameters: [("k2_g_per_g2".to_owned(), value)].into(),
+        };
+        model.effects = vec![k2(0.009)];
+        let read = |model: &Model| Model::parse(Path::new("m.toml"), &model.to_text());
+        assert!(read(&model).is_ok());
+        model.effects = vec![k2(0.011)];
+        assert!(refused(&model.to_text()).contains("k2_g_per_g2 = 0.011 is outside -0.01 to 0.01"));
+        // The same instrument in mg: 1 mg per mg² is 1000 g per g².
+        model.units.reference = "mg".to_owned();
+        model.scaling.line_g = model.scaling.line_g.map(|value| value * 1e3);
+        model.scaling.output_g *= 1e3;
+        for (value, good) in [(0.009e-3, true), (0.011e-3, false)] {
+            model.effects = vec![k2(value)];
+            assert_eq!(read(&model).is_ok(), good, "{value}");
         }
     }
 
