@@ -32,7 +32,9 @@ fn every_other_format_is_refused_by_its_number() {
     for other in [0, Model::FORMAT - 1, Model::FORMAT + 1, 99, u32::MAX] {
         let path = written(folder.path(), &format!("format = {other}\n"));
         match Model::read(&path) {
-            Err(ModelError::Format { found, supported, .. }) => assert_eq!((found, supported), (other, Model::FORMAT)),
+            Err(ModelError::Format { found, supported, .. }) => {
+                assert_eq!((found, supported), (i64::from(other), Model::FORMAT))
+            }
             read => panic!("format {other}: {read:?}"),
         }
     }

@@ -1,6 +1,7 @@
 //! Tables for people: columns padded to their widest cell, numbers to the right.
 
 use crate::terminal::visible_word;
+use std::borrow::Cow;
 use std::fmt;
 
 /// A table with a header line.
@@ -15,17 +16,21 @@ impl Table {
 
     /// A table whose number of columns is only known at run time; the first row is the header.
     pub fn of(rows: Vec<Vec<String>>) -> Self {
-        Self { rows: rows.iter().map(|cells| shown(cells)).collect() }
+        Self { rows: rows.into_iter().map(shown).collect() }
     }
 
     pub fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.rows.push(shown(&cells));
+        self.rows.push(shown(cells.into()));
     }
 }
 
 /// A name from elsewhere must not break the line that it stands in.
-fn shown(cells: &[String]) -> Vec<String> {
-    cells.iter().map(|cell| visible_word(cell).into_owned()).collect()
+fn shown(cells: Vec<String>) -> Vec<String> {
+    let visible = |cell: String| match visible_word(&cell) {
+        Cow::Borrowed(_) => cell,
+        Cow::Owned(shown) => shown,
+    };
+    cells.into_iter().map(visible).collect()
 }
 
 impl fmt::Display for Table {

@@ -254,6 +254,32 @@ impl Random {
     }
 }
 
+/// Starts a command, ends it after a while with Ctrl-C or the harder way, and says whether it was ended before it was done.
+fn is_killed(folder: &Path, arguments: &[&str], random: &mut Random, took_us: u64) -> bool {
+    let mut process = std::process::Command::new(TEMPCO)
+        .args(arguments)
+        .current_dir(folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("it starts");
+    std::thread::sleep(Duration::from_micros(random.below(took_us * 11 / 10)));
+    let signal = if random.below(2) == 0 { "-INT" } else { "-KILL" };
+    let id = process.id().to_string();
+    drop(std::process::Command::new("kill").args([signal, &id]).stderr(Stdio::null()).status());
+    !process.wait().expect("it ends").success()
+}
+
+/// Puts files back as they were.
+fn restore(folder: &Path, files: &[&str], from: &BTreeMap<String, Vec<u8>>) {
+    for file in files {
+        match from.get(*file) {
+            Some(bytes) => fs::write(folder.join(file), bytes).expect("written"),
+            None => drop(fs::remove_file(folder.join(file))),
+        }
+    }
+}
+
 /// 90 by default; `TEMPCO_KILLS=500` kills more often.
 #[test]
 #[expect(clippy::disallowed_methods, reason = "when to kill takes a clock")]
@@ -261,19 +287,20 @@ fn whoever_is_killed_leaves_the_old_file_or_the_new_one_and_nothing_else() {
     let kills: usize = std::env::var("TEMPCO_KILLS").ok().and_then(|text| text.parse().ok()).unwrap_or(90);
     let folder = worked_in();
     let folder = folder.path();
-    let cases = [
-        (0, vec!["model.toml"]),
-        (3, vec!["calibration.bin"]),
-        (3, vec!["calibration.hex"]),
-        (5, vec!["report.html"]),
-        (6, vec!["sim.csv"]),
-        (8, vec!["identity.hex"]),
+    let cases: [(usize, &[&str]); 8] = [
+        (0, &["model.toml"]),
+        (1, &["added.toml"]),
+        (3, &["calibration.bin"]),
+        (3, &["calibration.hex"]),
+        (5, &["report.html"]),
+        (6, &["sim.csv"]),
+        (7, &["campaign.csv", "campaign.sealed"]),
+        (8, &["identity.hex"]),
     ];
-    let mut random = Random(7);
-    let (mut killed, mut done) = (0, 0);
-    for (writer, files) in &cases {
-        let mut arguments = writing(WRITERS[*writer], files[0]);
-        if *writer == 0 {
+    let (mut random, mut killed) = (Random(7), 0);
+    for (writer, files) in cases {
+        let mut arguments = writing(WRITERS[writer], files[0]);
+        if writer == 0 {
             arguments.extend(["--seed", "2"]);
         }
         let old = contents(folder);
@@ -281,127 +308,21 @@ fn whoever_is_killed_leaves_the_old_file_or_the_new_one_and_nothing_else() {
         said(folder, 0, &arguments);
         let took_us = start.elapsed().as_micros() as u64;
         let new = contents(folder);
+        let others = |all: &BTreeMap<String, Vec<u8>>| -> Vec<String> {
+            all.keys().filter(|name| !files.contains(&name.as_str())).cloned().collect()
+        };
         for attempt in 0..kills.div_ceil(cases.len()) {
             let before = if attempt % 2 == 0 { &old } else { &new };
-            for file in files {
-                match before.get(*file) {
-                    Some(bytes) => fs::write(folder.join(file), bytes).expect("written"),
-                    None => drop(fs::remove_file(folder.join(file))),
-                }
-            }
-            let mut process = std::process::Command::new(TEMPCO)
-                .args(&arguments)
-                .current_dir(folder)
-                .stdout(Stdio::null())
-                .stderr(Stdio::null())
-                .spawn()
-                .expect("it starts");
-            std::thread::sleep(Duration::from_micros(random.below(took_us * 11 / 10)));
-            // Ctrl-C as well as the harder way.
-            let signal = if random.below(2) == 0 { "-INT" } else { "-KILL" };
-            let _ = std::process::Command::new("kill")
-                .args([signal, &process.id().to_string()])
-                .stderr(Stdio::null())
-                .status();
-            if process.wait().expect("it ends").success() {
-                done += 1
-            } else {
-                killed += 1
-            }
+            restore(folder, files, before);
+            killed += usize::from(is_killed(folder, &arguments, &mut random, took_us));
             let after = contents(folder);
             for file in files {
                 let found = after.get(*file);
                 assert!(found == before.get(*file) || found == new.get(*file), "{file} is cut after kill {attempt}");
             }
-            let names = |all: &BTreeMap<String, Vec<u8>>| -> Vec<String> {
-                all.keys().filter(|name| !files.contains(&name.as_str())).cloned().collect()
-            };
-            assert_eq!(names(&after), names(&old), "something is left behind");
+            assert_eq!(others(&after), others(&old), "something is left behind");
         }
         said(folder, 0, &arguments);
     }
-    assert!(killed > kills / 3, "{killed} killed, {done} done before");
-}
-
-#[test]
-fn what_a_killed_process_left_goes_with_the_next_file() {
-    let folder = worked_in();
-    let folder = folder.path();
-    let names = [".tempco-Ab3dEf7h.part", ".tempco-notes", ".tempco-Ab3dEf7h.part.csv"];
-    names.iter().for_each(|name| fs::write(folder.join(name), "cut").expect("written"));
-    let living = folder.join(".tempco-living99.part");
-    let file = fs::File::create(&living).expect("written");
-    file.try_lock().expect("a lock");
-    said(folder, 0, &["export", "model.toml", "-o", "calibration.bin"]);
-    assert_eq!(names.map(|name| folder.join(name).exists()), [false, true, true]);
-    assert!(living.exists(), "somebody is still writing it");
-}
-
-#[test]
-fn foreign_names_reach_a_terminal_as_text_and_json_stays_json() {
-    let folder = TempDir::new().expect("a folder");
-    let folder = folder.path();
-    let evil = "full-1\u{1b}[2J\u{7}\u{202e}\u{9b}x";
-    let small = fs::read_to_string(SMALL).expect("checked in").replace("full-1", evil);
-    let file = "a\u{1b}]0;b\u{7}.csv";
-    fs::write(folder.join(file), small).expect("written");
-    fs::write(folder.join("bad.csv"), format!("time_s,{evil}\n1,2\n")).expect("written");
-    let obeyed = |text: &str| text.contains(|c: char| (c.is_control() && c != '\n') || c == '\u{202e}');
-    for (code, arguments) in [
-        (0, vec!["inspect", file]),
-        (0, vec!["train", file, "-o", "model.toml", "--restarts", "1"]),
-        (0, vec!["compare", "model.toml", file]),
-        (0, vec!["compare", "model.toml", file, "--json"]),
-        (2, vec!["inspect", "bad.csv"]),
-        (2, vec!["inspect", "\u{1b}[31mabsent.csv"]),
-        (2, vec!["train", file, "-o", "no\u{1b}[31m/model.toml"]),
-        (2, vec!["\u{1b}[31mverb\r"]),
-    ] {
-        let text = said(folder, code, &arguments);
-        assert!(!obeyed(&text), "{arguments:?}: {text:?}");
-        if arguments.contains(&"--json") {
-            let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-            assert_eq!(value["runs"][0]["run"], evil);
-        }
-    }
-    assert!(said(folder, 0, &["inspect", file]).contains("full-1\\u001b[2J\\u0007\\u202e\\u009bx"));
-}
-
-#[test]
-fn all_files_are_written_and_all_lines_printed_in_one_place() {
-    let words = ["fs::write(", "File::create", "OpenOptions", "NamedTempFile", "println!", "print!(", "anstream::std"];
-    let mut folders = vec![
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../trainer/src"),
-    ];
-    let mut seen = 0;
-    while let Some(folder) = folders.pop() {
-        for path in fs::read_dir(&folder).expect("a folder").flatten().map(|entry| entry.path()) {
-            let name = path.to_string_lossy().into_owned();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            // The emulator's own folder, and what a browser sends piece by piece.
-            let exempt = [
-                "output/whole.rs",
-                "src/terminal.rs",
-                "link/qemu.rs",
-                "workbench/uploads.rs",
-                "workbench/launch.rs",
-                "tests.rs",
-                "firefly/rates.rs",
-            ];
-            if !name.ends_with(".rs") || exempt.iter().any(|end| name.ends_with(end)) {
-                continue;
-            }
-            seen += 1;
-            let source = fs::read_to_string(&path).expect("text");
-            let code = source.split("#[cfg(test)]").next().unwrap_or_default();
-            for line in code.lines().filter(|line| !line.trim_start().starts_with("//")) {
-                assert!(!words.iter().any(|word| line.contains(word)), "{name}: {line}");
-            }
-        }
-    }
-    assert!(seen > 150, "{seen} files");
+    assert!(killed > kills / 3, "only {killed} of {kills} were killed");
 }
