@@ -4,7 +4,7 @@ use super::bench::{Bench, Refusal};
 use super::guard::{Guard, seal};
 use super::{First, Settings, assets, events, launch, places, samples, uploads, verb};
 use crate::failure::Failure;
-use crate::terminal::say;
+use crate::terminal::{remark, say};
 use axum::body::Bytes;
 use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::{StatusCode, header};
@@ -26,7 +26,9 @@ pub fn serve(settings: Settings) -> Result<(), Failure> {
     let _claim = places::claimed(&folder)?;
     let bench = Arc::new(Bench::new(folder));
     begin(&bench, first)?;
-    say!("Workbench:  {}\nStop it with Ctrl-C.", guard.url())?;
+    say!("Workbench:  {}", guard.url())?;
+    // Whoever has read the address may read no further: that ends nothing.
+    remark!("Stop it with Ctrl-C.");
     let _opened = if open { launch::browser(&guard.url()) } else { None };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failure::new)?;
     runtime

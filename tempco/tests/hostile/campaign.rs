@@ -50,7 +50,7 @@ const EFFECTS_ON: [&str; 5] = ["supply_v", "humidity_pct", "pressure_pa", "vibra
 
 /// A sound campaign of few rows and many kinds.
 fn sound(random: &mut Random) -> Table {
-    let (runs, rows) = (1 + random.below(5), 20 + random.below(60));
+    let (runs, rows) = (2 + random.below(4), 30 + random.below(50));
     let pair = random.below(3) == 0;
     let mut header: Vec<String> = ["run", "kind", "time_s", "temperature_c", "reference_g"].map(str::to_owned).to_vec();
     header.extend(if pair { vec!["f1_hz".to_owned(), "f2_hz".to_owned()] } else { vec!["delta_f_hz".to_owned()] });
@@ -82,18 +82,100 @@ fn sound(random: &mut Random) -> Table {
     table
 }
 
-/// Spoils a sound campaign in one to three ways.
+/// Spoils a sound campaign in one to three ways, mostly such that it can still be read.
 pub fn spoilt(random: &mut Random) -> Spoilt {
     let mut table = sound(random);
     let mut how = Vec::new();
+    let is_harsh = random.below(4) == 0;
     for _ in 0..1 + random.below(3) {
-        how.push(spoil(&mut table, random));
+        how.push(if is_harsh { spoil(&mut table, random) } else { distort(&mut table, random) });
     }
     let mut bytes = written(&table, random.of(&[",", ",", ",", ";", "\t"]));
-    if random.below(4) == 0 {
+    if is_harsh && random.below(3) == 0 {
         how.push(spoil_bytes(&mut bytes, random));
     }
     Spoilt { bytes, options: options(random), training: training(random), how }
+}
+
+/// What a sensor, a thermometer or a logger may do.
+fn distort(table: &mut Table, random: &mut Random) -> &'static str {
+    if random.below(2) == 0 { distort_column(table, random) } else { distort_rows(table, random) }
+}
+
+const TIME: usize = 2;
+const TEMPERATURE: usize = 3;
+const REFERENCE: usize = 4;
+const SIGNAL: usize = 5;
+
+fn distort_column(table: &mut Table, random: &mut Random) -> &'static str {
+    let scale = 10_f64.powi(random.below(19) as i32 - 9);
+    match random.below(7) {
+        0 => {
+            change(table, REFERENCE, |number| number * scale);
+            "the reference in another unit"
+        }
+        1 => {
+            change(table, SIGNAL, |number| number * scale);
+            "the signal in another unit"
+        }
+        2 => {
+            change(table, REFERENCE, |number| -number);
+            "the reference negated"
+        }
+        3 => {
+            change(table, TIME, |number| number + 1.7e9);
+            "a calendar's clock"
+        }
+        4 => {
+            change(table, TEMPERATURE, f64::round);
+            "a coarse thermometer"
+        }
+        5 => {
+            change(table, TEMPERATURE, |_| 25.0);
+            "one temperature"
+        }
+        _ => {
+            change(table, SIGNAL, |number| number.clamp(-300.0, 300.0));
+            "a clipped signal"
+        }
+    }
+}
+
+fn distort_rows(table: &mut Table, random: &mut Random) -> &'static str {
+    match random.below(5) {
+        0 => {
+            for _ in 0..1 + random.below(4) {
+                let (row, column) = (random.below(table.rows.len()), TEMPERATURE + random.below(3));
+                set(table, row, column, random.of(&["0", "85", "-127", "9.81", "-5", "1000", "1e-9", "-0.0"]));
+            }
+            "wrong rows"
+        }
+        1 => {
+            let later = |row: &Vec<String>| {
+                let mut row = row.clone();
+                row[TIME] += ".5";
+                row
+            };
+            table.rows = table.rows.iter().flat_map(|row| [row.clone(), later(row)]).collect();
+            "every row again half a second later"
+        }
+        2 => {
+            table.rows.iter_mut().enumerate().for_each(|(index, row)| row[0] = format!("run-{}", index / 7));
+            "a run for every seven rows"
+        }
+        3 => {
+            let factor = [-1.0, 9.806_65, 0.0][random.below(3)];
+            for row in table.rows.iter_mut().filter(|row| row[0].ends_with("-1")) {
+                row[REFERENCE] = format!("{:?}", row[REFERENCE].parse::<f64>().unwrap_or(0.0) * factor);
+            }
+            "one run's reference in another unit"
+        }
+        _ => {
+            let prefix = random.of(&["\u{1b}[2J", "\u{202e}", "'; rm x; '", "<b>", "a b"]);
+            table.rows.iter_mut().for_each(|row| row[0] = format!("{prefix}{}", row[0]));
+            "strange names of runs"
+        }
+    }
 }
 
 fn written(table: &Table, separator: &str) -> Vec<u8> {
@@ -235,13 +317,7 @@ fn spoil_bytes(bytes: &mut Vec<u8>, random: &mut Random) -> &'static str {
 
 /// Options of reading, mostly none.
 fn options(random: &mut Random) -> Vec<String> {
-    let choices: [&[&str]; 12] = [
-        &[],
-        &[],
-        &[],
-        &[],
-        &[],
-        &[],
+    let choices: [&[&str]; 6] = [
         &["--constant-reference", "0"],
         &["--constant-reference", "1e30"],
         &["--map", "time_s=row*1e300"],
@@ -249,24 +325,23 @@ fn options(random: &mut Random) -> Vec<String> {
         &["--signal", "delta_f_hz", "--signal-unit", "ppm"],
         &["--channels", "supply_v"],
     ];
-    choices[random.below(choices.len())].iter().map(|&word| word.to_owned()).collect()
+    seldom(&choices, random)
 }
 
 /// Options of training, mostly none.
 fn training(random: &mut Random) -> Vec<String> {
-    let choices: [&[&str]; 12] = [
-        &[],
-        &[],
-        &[],
-        &[],
-        &[],
+    let choices: [&[&str]; 6] = [
         &["--scale-factor", "420"],
         &["--scale-factor", "0"],
         &["--scale-factor", "-1e300"],
         &["--scale-factor", "nan"],
         &["--hold-out", "none"],
         &["--hold-out", "full-0"],
-        &["--restarts", "0"],
     ];
-    choices[random.below(choices.len())].iter().map(|&word| word.to_owned()).collect()
+    seldom(&choices, random)
+}
+
+fn seldom(choices: &[&[&str]], random: &mut Random) -> Vec<String> {
+    let chosen = random.below(8 * choices.len());
+    choices.get(chosen).into_iter().copied().flatten().map(|&word| word.to_owned()).collect()
 }

@@ -41,7 +41,7 @@ fn an_upload_with_other_names_is_read_as_it_is_told() {
 #[test]
 fn stopped_work_leaves_nothing_behind_and_only_one_piece_goes_on_at_a_time() {
     let served = Served::small();
-    assert_eq!(served.post("train", r#"{"restarts":100000}"#).status, 204);
+    assert_eq!(served.post("train", r#"{"restarts":10000}"#).status, 204);
     assert_eq!(served.post("train", "{}").status, 409);
     assert_eq!(served.state()["job"]["step"], "train");
     assert_eq!(served.post("stop", "{}").status, 204);
