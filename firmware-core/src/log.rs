@@ -3,7 +3,7 @@
 //! Each is called where something happens for the first time, never once a reading: a log that floods tells nothing.
 #![cfg_attr(not(feature = "defmt"), allow(unused_variables, clippy::missing_const_for_fn))]
 
-use crate::compensator::LoadError;
+use crate::load_error::LoadError;
 use protocol::{BlobError, Status};
 
 /// Power was applied; the program runs.

@@ -3,8 +3,8 @@
 //! Apart from the compensator because training runs the same effects over measurements whose level
 //! is known from the reference, without a network.
 
-use crate::compensator::LoadError;
 use crate::effect::{self, Coefficients, Disturbance, Effect, Moment, Signal};
+use crate::load_error::LoadError;
 use crate::memory::{Memory, State};
 use crate::observe::{Clock, Observation, Step};
 use crate::program::{Program, ProgramError, Reads};

@@ -19,7 +19,7 @@ fn run(number: u64, rows: u64) -> Run {
         (0..12).map(|_| uniform()).sum::<f64>()
     };
     let (offset_g, mut inside_c) = (3e-6 * normal(), -20.0 + 80.0 * (number % 37) as f64 / 37.0);
-    let rate_c_per_s = if number % 2 == 0 { 1.0 } else { -1.0 } / 60.0;
+    let rate_c_per_s = if number.is_multiple_of(2) { 1.0 } else { -1.0 } / 60.0;
     let mut outside_c = inside_c;
     let row = |k: u64| {
         outside_c += 10.0 * rate_c_per_s;
