@@ -46,6 +46,7 @@ fn peak_mib() -> u64 {
     line.split_whitespace().nth(1).and_then(|kib| kib.parse::<u64>().ok()).unwrap_or_default() / 1024
 }
 
+#[expect(clippy::disallowed_methods, reason = "how long it takes is what is asked")]
 fn main() {
     let mut numbers = std::env::args().skip(1).filter_map(|text| text.parse::<u64>().ok());
     let (runs, rows) = (numbers.next().unwrap_or(3000), numbers.next().unwrap_or(100));
