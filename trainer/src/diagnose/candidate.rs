@@ -11,7 +11,9 @@ use crate::expression::Expression;
 use crate::fit::effects::Chosen;
 use crate::train::{EffectChoice, choose};
 use firmware_core::effect::{self, About, Parameter, Role};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// One effect at one shape.
 pub(super) struct Candidate {
@@ -21,11 +23,22 @@ pub(super) struct Candidate {
     pub values: Vec<f64>,
     /// Indices of the amplitudes; none if the effect comes in one size.
     pub amplitudes: Vec<usize>,
-    /// What a unit of each amplitude (or the effect as it is) adds to the residual once compensated, µg.
-    pub columns: Columns,
-    /// The same of the sum of the frequencies, mHz, where it is measured and the effect says what it does to it.
-    pub sum: Option<Columns>,
+    /// Its columns, if there was room to keep them; they are made anew whenever they are asked for otherwise.
+    kept: Option<Made>,
 }
+
+/// A candidate's columns.
+struct Made {
+    /// What a unit of each amplitude (or the effect as it is) adds to the residual once compensated, µg.
+    delta: Columns,
+    /// The same of the sum of the frequencies, mHz, where it is measured and the effect says what it does to it.
+    sum: Option<Columns>,
+}
+
+/// Columns of all candidates together are kept up to so many bytes: they would grow with runs × candidates.
+const KEPT_BYTES: usize = 256 << 20;
+/// What a matrix takes beside its numbers: itself, and what the allocator needs.
+const MATRIX_BYTES: usize = size_of::<DMatrix<f64>>() + 16;
 
 /// Amplitudes are tried at this share of their bound: formulas are linear in them.
 const UNIT: f64 = 1e-3;
@@ -47,12 +60,23 @@ const WIDTHS: [f64; 3] = [0.7, 2.0, 6.0];
 impl Candidate {
     /// All of them. `shown` says which effects this campaign can show.
     pub fn all(case: &Case, shown: &[Chosen]) -> Vec<Self> {
+        Self::all_within(case, shown, KEPT_BYTES)
+    }
+
+    /// All of them, of which the first are kept that have room in so many bytes.
+    fn all_within(case: &Case, shown: &[Chosen], mut bytes: usize) -> Vec<Self> {
         let still = case.left(&Known::NONE);
-        let shapes: Vec<(Chosen, Vec<f64>)> = shown
-            .iter()
-            .flat_map(|effect| shapes(effect, case).into_iter().map(|values| (effect.clone(), values)))
-            .collect();
-        shapes.into_par_iter().map(|(effect, values)| Self::new(case, &still, effect, values)).collect()
+        let shapes =
+            shown.iter().flat_map(|effect| shapes(effect, case).into_iter().map(|values| (effect.clone(), values)));
+        let mut all: Vec<Self> = shapes.map(|(effect, values)| Self::new(effect, values)).collect();
+        let has_room = |candidate: &&mut Self| {
+            let rest = bytes.checked_sub(candidate.bytes(case));
+            bytes = rest.unwrap_or(0);
+            rest.is_some()
+        };
+        let kept: Vec<&mut Self> = all.iter_mut().take_while(has_room).collect();
+        kept.into_par_iter().for_each(|candidate| candidate.kept = Some(candidate.made(case, &still)));
+        all
     }
 
     /// An effect that sits at a place, at that place and width, moved by the level in each way that its width tells apart.
@@ -64,31 +88,63 @@ impl Candidate {
         let most_c_per_g = SHIFTS.into_iter().fold(0.0, f64::max) * case.shift_c_per_g();
         let step_c_per_g = width_c(effect.about, values) * PLACE_STEP / most_g;
         let count = (most_c_per_g / step_c_per_g).ceil().clamp(1.0, MOST_SHIFTS);
-        let still = case.left(&Known::NONE);
         let at = |k: i32| {
             let mut values = values.to_vec();
             amplitudes(effect.about).into_iter().for_each(|index| values[index] = unit(effect, index));
             let about = &effect.about.parameters[shift];
             values[shift] = (f64::from(k) / count * most_c_per_g).clamp(about.low, about.high);
-            Self::new(case, &still, effect.clone(), values)
+            Self::new(effect.clone(), values)
         };
-        (-count as i32..=count as i32).into_par_iter().map(at).collect()
+        (-count as i32..=count as i32).map(at).collect()
     }
 
-    fn new(case: &Case, still: &Left, effect: Chosen, values: Vec<f64>) -> Self {
+    fn new(effect: Chosen, values: Vec<f64>) -> Self {
         let amplitudes = amplitudes(effect.about);
-        let told = is_told(effect.about);
+        Self { effect, values, amplitudes, kept: None }
+    }
+
+    /// What a unit of each amplitude (or the effect as it is) adds to the residual once compensated, µg.
+    pub fn delta(&self, case: &Case) -> Cow<'_, Columns> {
+        match &self.kept {
+            Some(made) => Cow::Borrowed(&made.delta),
+            None => Cow::Owned(self.made(case, &case.left(&Known::NONE)).delta),
+        }
+    }
+
+    /// The same of the sum of the frequencies, mHz, where it is [told](Self::tells).
+    pub fn sum(&self, case: &Case) -> Option<Cow<'_, Columns>> {
+        match &self.kept {
+            Some(made) => made.sum.as_ref().map(Cow::Borrowed),
+            None if self.tells(case) => self.made(case, &case.left(&Known::NONE)).sum.map(Cow::Owned),
+            None => None,
+        }
+    }
+
+    /// Whether the sum of the frequencies is measured and the effect says what it does to it.
+    pub fn tells(&self, case: &Case) -> bool {
+        case.sum.is_some() && is_told(self.effect.about)
+    }
+
+    /// What its columns take.
+    fn bytes(&self, case: &Case) -> usize {
+        let numbers = case.layout.len() * self.amplitudes.len().max(1) * size_of::<f64>();
+        let one = numbers + case.layout.stretches.len() * MATRIX_BYTES;
+        if self.tells(case) { 2 * one } else { one }
+    }
+
+    fn made(&self, case: &Case, still: &Left) -> Made {
         let (mut columns, mut sums): (Vec<Columns>, Vec<Columns>) = (Vec::new(), Vec::new());
-        for only in 0..amplitudes.len().max(1) {
-            let mut values = values.clone();
-            amplitudes.iter().filter(|&&index| index != amplitudes[only]).for_each(|&index| values[index] = 0.0);
-            let left = case.left(&Known::NONE.with(&effect, &values));
+        for only in 0..self.amplitudes.len().max(1) {
+            let mut values = self.values.clone();
+            let others = self.amplitudes.iter().filter(|&&index| index != self.amplitudes[only]);
+            others.for_each(|&index| values[index] = 0.0);
+            let left = case.left(&Known::NONE.with(&self.effect, &values));
             columns.push(difference(&left.delta, &still.delta));
-            let both = left.sum.as_ref().zip(still.sum.as_ref()).filter(|_| told);
+            let both = left.sum.as_ref().zip(still.sum.as_ref()).filter(|_| self.tells(case));
             sums.extend(both.map(|(moved, still)| difference(moved, still)));
         }
         let sum = (!sums.is_empty()).then(|| joined(&sums));
-        Self { effect, values, amplitudes, columns: joined(&columns), sum }
+        Made { delta: joined(&columns), sum }
     }
 }
 

@@ -7,6 +7,7 @@ use super::instrument::Known;
 use super::sum_channel::{Response, response};
 use super::whitening::Columns;
 use nalgebra::{Cholesky, DMatrix};
+use std::borrow::Cow;
 
 /// What a hypothesis foretells, and all that it could foretell with other parameters.
 pub(super) struct Foretold {
@@ -43,7 +44,8 @@ impl Foretold {
         };
         let far = Candidate::all(case, std::slice::from_ref(effect));
         let far = if far.len() > MOST_SHAPES { Vec::new() } else { far };
-        let far = far.into_iter().map(|Candidate { columns: delta, sum, .. }| {
+        let far = far.into_iter().map(|one: Candidate| {
+            let (delta, sum) = (one.delta(case).into_owned(), one.sum(case).map(Cow::into_owned));
             let silent = || delta.iter().map(|run| run * 0.0).collect();
             let sum = course.sum.as_ref().map(|_| sum.unwrap_or_else(silent));
             Pair { delta, sum }

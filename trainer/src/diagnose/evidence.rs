@@ -14,6 +14,7 @@ use super::layout::Layout;
 use super::whitening::{Columns, NoiseModel, Whitening};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// A residual and the instrument's freedom, under one noise.
@@ -41,6 +42,9 @@ const ROUNDING: f64 = 1e-10;
 
 /// So many candidates are scored together: few enough for a processor's cache, enough to share the work.
 const TOGETHER: usize = 16;
+
+/// And so many such groups are made at once.
+const GROUPS: usize = 4;
 
 /// Several candidates' whitened columns, side by side.
 struct Together {
@@ -86,8 +90,12 @@ impl Bench {
         Score { normal, right }
     }
 
-    /// The scores of many candidates.
-    pub fn scores(&self, candidates: &[&Columns]) -> Vec<Score> {
+    /// The scores of many candidates, whose columns are asked for when their turn comes.
+    pub fn scores<'c, T: Sync>(
+        &self,
+        candidates: &'c [T],
+        columns: impl Fn(&'c T) -> Cow<'c, Columns> + Sync,
+    ) -> Vec<Score> {
         let of = |some: &[&Columns]| {
             let Together { places, columns, cross, solved } = self.together(some);
             let right = product(&columns, &self.residual).column(0) - cross.tr_mul(&self.absorbed);
@@ -96,13 +104,17 @@ impl Bench {
                 normal: normal.view((place.start, place.start), (place.len(), place.len())).into_owned(),
                 right: right.rows(place.start, place.len()).into_owned(),
             };
-            places.into_iter().map(score).collect::<Vec<_>>()
+            places.into_iter().map(score).collect()
         };
-        candidates.par_chunks(TOGETHER).flat_map_iter(of).collect()
+        in_turn(candidates, columns, of)
     }
 
     /// Of each candidate's columns: RMS size, and the greatest share of an amplitude that the instrument leaves.
-    pub fn shares_left(&self, candidates: &[&Columns]) -> Vec<(f64, f64)> {
+    pub fn shares_left<'c, T: Sync>(
+        &self,
+        candidates: &'c [T],
+        columns: impl Fn(&'c T) -> Cow<'c, Columns> + Sync,
+    ) -> Vec<(f64, f64)> {
         let cells: f64 = self.residual.iter().map(|run| run.nrows() as f64).sum();
         let square =
             |all: &Columns, column: usize| all.iter().map(|run| run.column(column).norm_squared()).sum::<f64>();
@@ -117,9 +129,9 @@ impl Bench {
                 let sizes = (0..width(candidate)).map(|column| (square(candidate, column) / cells).sqrt());
                 (sizes.fold(0.0, f64::max), place.map(share).fold(0.0, f64::max))
             };
-            some.iter().zip(places).map(greatest).collect::<Vec<_>>()
+            some.iter().zip(places).map(greatest).collect()
         };
-        candidates.par_chunks(TOGETHER).flat_map_iter(of).collect()
+        in_turn(candidates, columns, of)
     }
 
     fn together(&self, candidates: &[&Columns]) -> Together {
@@ -182,6 +194,20 @@ impl Score {
         }
         Cholesky::new(normal)
     }
+}
+
+/// Something of each candidate, some at a time: there may be no room for the columns of all of them.
+fn in_turn<'c, T: Sync, R: Send>(
+    candidates: &'c [T],
+    columns: impl Fn(&'c T) -> Cow<'c, Columns> + Sync,
+    of: impl Fn(&[&Columns]) -> Vec<R> + Sync,
+) -> Vec<R> {
+    let turn = |some: &'c [T]| {
+        let made: Vec<Cow<Columns>> = some.par_iter().map(&columns).collect();
+        let made: Vec<&Columns> = made.iter().map(AsRef::as_ref).collect();
+        made.par_chunks(TOGETHER).flat_map_iter(&of).collect::<Vec<R>>()
+    };
+    candidates.chunks(TOGETHER * GROUPS).flat_map(turn).collect()
 }
 
 /// Where the columns of each candidate stand when all are side by side.

@@ -24,8 +24,7 @@ impl Screening {
     /// Sorts the candidates; `None` if the noise makes no sense.
     pub fn new(case: &Case, known: &Known, candidates: Vec<Candidate>, noises: &Noises) -> Option<Self> {
         let benches = case.benches(&case.left(known), &case.adapting(known, noises), &noises.small())?;
-        let columns: Vec<_> = candidates.iter().map(|candidate| &candidate.columns).collect();
-        let left = benches.delta.shares_left(&columns);
+        let left = benches.delta.shares_left(&candidates, |candidate| candidate.delta(case));
         let (mut visible, mut seen, mut shares) = (Vec::new(), Vec::new(), Vec::new());
         for (candidate, (own, share)) in candidates.into_iter().zip(left) {
             let about = candidate.effect.about;

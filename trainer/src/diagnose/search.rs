@@ -6,7 +6,6 @@ use super::evidence::{Bench, Score, difference};
 use super::instrument::Known;
 use super::left::{Held, Left};
 use super::sum_channel::{Response, is_told, response};
-use super::whitening::Columns;
 use crate::fit::effects::Chosen;
 use firmware_core::effect::Role;
 use rayon::prelude::*;
@@ -301,12 +300,15 @@ impl Case<'_> {
         let is_known =
             |candidate: &&Candidate| known.effects.iter().any(|one| name_of(one) == name_of(&candidate.effect));
         let candidates: Vec<&Candidate> = candidates.iter().filter(|candidate| !is_known(candidate)).collect();
-        let columns: Vec<&Columns> = candidates.iter().map(|candidate| &candidate.columns).collect();
-        let sums: Vec<&Columns> = candidates.iter().filter_map(|candidate| candidate.sum.as_ref()).collect();
-        let mut of_sums = benches.sum.iter().flat_map(|bench| bench.scores(&sums));
+        let told: Vec<&Candidate> = candidates.iter().copied().filter(|candidate| candidate.tells(self)).collect();
+        let mut of_sums = benches
+            .sum
+            .iter()
+            .flat_map(|bench| bench.scores(&told, |candidate| candidate.sum(self).unwrap_or_default()));
+        let of_deltas = benches.delta.scores(&candidates, |candidate| candidate.delta(self));
         let mut best: Vec<Contender> = Vec::new();
-        for (candidate, mut score) in candidates.into_iter().zip(benches.delta.scores(&columns)) {
-            if candidate.sum.is_some() {
+        for (&candidate, mut score) in candidates.iter().zip(of_deltas) {
+            if candidate.tells(self) {
                 score = of_sums.next().iter().fold(score, Score::tied);
             }
             let contender = self.judged(candidate, &score);
@@ -322,8 +324,8 @@ impl Case<'_> {
     /// The same, moved by the level as suits it best: the grid of places is too coarse for that.
     fn shifted(&self, benches: &Benches, contender: Contender) -> Contender {
         let candidates = Candidate::shifted(self, &contender.effect, &contender.values);
-        let columns: Vec<&Columns> = candidates.iter().map(|candidate| &candidate.columns).collect();
-        let judged = candidates.iter().zip(benches.delta.scores(&columns)).map(|(one, score)| self.judged(one, &score));
+        let scores = benches.delta.scores(&candidates, |candidate| candidate.delta(self));
+        let judged = candidates.iter().zip(scores).map(|(one, score)| self.judged(one, &score));
         judged.fold(contender, |best, next| if next.evidence > best.evidence { next } else { best })
     }
 

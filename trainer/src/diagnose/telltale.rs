@@ -22,6 +22,7 @@ use super::suspect::{Course, Suspect};
 use super::whitening::{Columns, MOUNTING, NoiseModel, POSE, POSITION, RUN, TURN};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// What gives away that something is missing.
 #[derive(Clone, Debug)]
@@ -139,7 +140,7 @@ impl Scene<'_> {
         };
         let columns: Vec<&Columns> = suspects.iter().filter_map(everywhere).collect();
         let price = |suspect: &Suspect| self.case.price() * suspect.course.width() as f64;
-        let mut of_all = bench.scores(&columns).into_iter();
+        let mut of_all = bench.scores(&columns, |columns| Cow::Borrowed(*columns)).into_iter();
         let score = |suspect: &'s Suspect| match &suspect.course {
             Course::All(_) => of_all.next(),
             Course::One(run, columns) => Some(bench.score_in(*run, columns)),
