@@ -242,3 +242,89 @@ fn width_c(about: &About, values: &[f64]) -> f64 {
 /// Least distance between places, °C, and as a share of the width.
 const PLACE_STEP_C: f64 = 1.5;
 const PLACE_STEP: f64 = 0.7;
+
+#[cfg(test)]
+mod tests {
+    use super::super::{judge, yardstick};
+    use super::*;
+    use crate::campaign::{HoldOut, Quantity, Row, Run};
+    use crate::model::Model;
+    use crate::progress::Quiet;
+    use crate::train::{TrainSettings, train};
+    use protocol::Sample;
+    use std::path::PathBuf;
+
+    /// Two forks that warm up and are turned, run by run; a lag of two samples.
+    fn campaign(runs: u64, rows: u64) -> Campaign {
+        let row = |run: u64, k: u64| {
+            let celsius = |k: u64| -10.0 + ((run * 7 + k) % 60) as f64;
+            let (level_g, warm_c) = (f64::sin((k / 2 + run) as f64), celsius(k + 58) - 20.0);
+            let noise_hz = ((run * 131 + k * 37) % 23) as f64 * 1e-4;
+            let difference_hz = 76.0 + 420.0 * level_g + 0.3 * warm_c + noise_hz;
+            let (f1_hz, f2_hz) =
+                (40_000.0 - 2.4 * warm_c + difference_hz / 2.0, 40_000.0 - 2.4 * warm_c - difference_hz / 2.0);
+            let [f1_uhz, f2_uhz] = [f1_hz, f2_hz].map(|hz| (hz * 1e6) as u64);
+            let sample = Sample::from_pair(k * 60_000_000, f1_uhz, f2_uhz, (celsius(k) * 1e6) as i32);
+            Row { sample, reference_g: level_g, reference_sigma_g: None }
+        };
+        let run = |number: u64| Run {
+            name: format!("r{number}"),
+            kind: "ramp".to_owned(),
+            source: PathBuf::new(),
+            rows: (0..rows).map(|k| row(number, k)).collect(),
+        };
+        Campaign::new((0..runs).map(run).collect(), Vec::new(), Quantity::default())
+    }
+
+    fn model(campaign: &Campaign) -> Model {
+        let split = campaign.split(&HoldOut::None).unwrap();
+        train(campaign, &split, &TrainSettings { restarts: 1, ..TrainSettings::new(1) }, &Quiet).unwrap().model
+    }
+
+    fn kept(candidates: &[Candidate]) -> impl Iterator<Item = &Made> {
+        candidates.iter().filter_map(|candidate| candidate.kept.as_ref())
+    }
+
+    fn numbers(columns: &Columns) -> usize {
+        columns.iter().map(DMatrix::len).sum()
+    }
+
+    #[test]
+    fn what_is_not_kept_is_judged_as_what_is_to_the_last_bit() {
+        let campaign = campaign(6, 40);
+        let model = model(&campaign);
+        let yardstick = yardstick(&model, &campaign).unwrap();
+        let campaign = yardstick.campaign(&campaign);
+        let case = judge::case(&model, &campaign, &yardstick).unwrap();
+        let shown = with_channels(&campaign);
+        let noises = case.noises(&case.left(&Known::NONE), &case.stiff(&Known::NONE), None);
+        let benches = case.benches(&case.left(&Known::NONE), &case.stiff(&Known::NONE), &noises).unwrap();
+        let judged = |bytes: usize| {
+            let all = Candidate::all_within(&case, &shown, bytes);
+            let found = case.screen(&benches, &Known::NONE, &all).into_iter();
+            let bits = |value: &f64| value.to_bits();
+            let found = found.map(|one| (one.evidence.to_bits(), one.values.iter().map(bits).collect::<Vec<u64>>()));
+            (kept(&all).count(), all.len(), found.collect::<Vec<_>>())
+        };
+        let [(none, _, without), (some, _, partly), (all, count, with)] = [0, 200_000, usize::MAX].map(judged);
+        assert!(none == 0 && 0 < some && some < count && all == count, "{none} {some} {all} {count}");
+        assert!(with.len() > 5 && case.sum.is_some());
+        assert_eq!(without, with);
+        assert_eq!(partly, with);
+    }
+
+    #[test]
+    fn however_many_runs_there_are_no_more_is_kept_than_there_is_room_for() {
+        let model = model(&campaign(6, 40));
+        let campaign = campaign(4000, 4);
+        let yardstick = yardstick(&model, &campaign).unwrap();
+        let campaign = yardstick.campaign(&campaign);
+        let case = judge::case(&model, &campaign, &yardstick).unwrap();
+        let all = Candidate::all(&case, &with_channels(&campaign));
+        // Of a run of two cells the matrix is more than the numbers in it.
+        let bytes = |columns: &Columns| size_of_val(columns.as_slice()) + numbers(columns) * size_of::<f64>();
+        let total: usize = kept(&all).map(|made| bytes(&made.delta) + made.sum.as_ref().map_or(0, bytes)).sum();
+        let (count, of) = (kept(&all).count(), all.len());
+        assert!(total <= KEPT_BYTES && total > KEPT_BYTES / 2 && count < of, "{total} {count} of {of}");
+    }
+}
