@@ -308,7 +308,7 @@ mod tests {
         };
         let [(none, _, without), (some, _, partly), (all, count, with)] = [0, 200_000, usize::MAX].map(judged);
         assert!(none == 0 && 0 < some && some < count && all == count, "{none} {some} {all} {count}");
-        assert!(with.len() > 5 && case.sum.is_some());
+        assert!(with.len() > 5, "{} candidates", with.len());
         assert_eq!(without, with);
         assert_eq!(partly, with);
     }
@@ -316,7 +316,7 @@ mod tests {
     #[test]
     fn however_many_runs_there_are_no_more_is_kept_than_there_is_room_for() {
         let model = model(&campaign(6, 40));
-        let campaign = campaign(4000, 4);
+        let campaign = campaign(8000, 4);
         let yardstick = yardstick(&model, &campaign).unwrap();
         let campaign = yardstick.campaign(&campaign);
         let case = judge::case(&model, &campaign, &yardstick).unwrap();
