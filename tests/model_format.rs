@@ -33,7 +33,7 @@ fn every_other_format_is_refused_by_its_number() {
         let path = written(folder.path(), &format!("format = {other}\n"));
         match Model::read(&path) {
             Err(ModelError::Format { found, supported, .. }) => {
-                assert_eq!((found, supported), (i64::from(other), Model::FORMAT))
+                assert_eq!((found, supported), (i64::from(other), Model::FORMAT));
             }
             read => panic!("format {other}: {read:?}"),
         }

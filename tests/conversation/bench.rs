@@ -67,7 +67,7 @@ impl<'a> Bench<'a> {
         self.time_us += if dice.percent(97) { dice.pick(&usual_us) } else { dice.pick(&rare_us) };
         match dice.roll(100) {
             0..60 => self.towards_the_goal(dice, seen),
-            60..80 => self.ask(self.any_request(dice), dice, seen),
+            60..80 => self.ask(&self.any_request(dice), dice, seen),
             80..84 => self.poll(seen),
             84..88 => self.let_sensors_see_something(dice),
             88..92 => self.spoilt_frame(dice, seen),
@@ -87,10 +87,10 @@ impl<'a> Bench<'a> {
     /// Asks for everything that can be seen.
     pub fn look_at_everything(&mut self, seen: &mut Seen) {
         for offset in (0..1200).step_by(MAX_CHUNK) {
-            self.exchange(self.next_number(), Request::ReadBlob { offset }, seen);
+            self.exchange(self.next_number(), &Request::ReadBlob { offset }, seen);
         }
         for request in [Request::ReadState, Request::ReadStorage, Request::Identify] {
-            self.exchange(self.next_number(), request, seen);
+            self.exchange(self.next_number(), &request, seen);
         }
     }
 
@@ -115,7 +115,7 @@ impl<'a> Bench<'a> {
                 Request::WriteBlob { offset: offset as u16, bytes: piece.try_into().expect("a piece") }
             }
         };
-        self.ask(request, dice, seen);
+        self.ask(&request, dice, seen);
     }
 
     fn any_request(&self, dice: &mut Dice) -> Request {
@@ -150,7 +150,7 @@ impl<'a> Bench<'a> {
     }
 
     /// Asks under a number that usually is the next one.
-    fn ask(&mut self, request: Request, dice: &mut Dice, seen: &mut Seen) {
+    fn ask(&mut self, request: &Request, dice: &mut Dice, seen: &mut Seen) {
         let number = match dice.roll(100) {
             0..93 => self.next_number(),
             93..96 => self.answered,
@@ -164,7 +164,7 @@ impl<'a> Bench<'a> {
         self.answered.checked_add(1).unwrap_or(1)
     }
 
-    fn exchange(&mut self, sequence: u16, request: Request, seen: &mut Seen) {
+    fn exchange(&mut self, sequence: u16, request: &Request, seen: &mut Seen) {
         let frame = encode_frame(&Envelope { sequence, body: request.clone() }).expect("it fits");
         let answer = self.sent(&frame).unwrap_or_else(|| panic!("no answer to {request:?}, {}", self.place()));
         if sequence != 0 && sequence == self.answered {
@@ -177,8 +177,8 @@ impl<'a> Bench<'a> {
         if sequence == 0 {
             self.reference.stream = None;
         }
-        let body = self.reference.answer(&request, sequence, self.time_us, &given.body);
-        *seen.entry(name(&request, &body)).or_default() += 1;
+        let body = self.reference.answer(request, sequence, self.time_us, &given.body);
+        *seen.entry(name(request, &body)).or_default() += 1;
         let expected = encode_response(&Envelope { sequence, body: body.clone() }).expect("it fits");
         let place = self.place();
         assert!(answer == expected[..], "{request:?}, {place}\nanswered {:?}\nexpected {body:?}", given.body);
