@@ -94,8 +94,8 @@ impl Compensator<f32> {
 
     fn proven(blob: &Blob) -> Result<Self, LoadError> {
         let compensator = Self::assemble(blob)?;
-        compensator.check_slope()?;
         let computed = compensator.network.proof().ok_or(LoadError::Number)?;
+        compensator.check_slope()?;
         if computed != blob.proof {
             return Err(LoadError::Proof { computed, stored: blob.proof });
         }
