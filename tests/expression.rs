@@ -13,6 +13,7 @@ use tempfile::TempDir;
 use tests::example;
 use trainer::campaign::{Campaign, HoldOut, ReadOptions, Run};
 use trainer::compare::compare;
+use trainer::effect_choice::EffectError;
 use trainer::model::Model;
 use trainer::progress::Quiet;
 use trainer::replay::replay;
@@ -168,9 +169,12 @@ fn what_cannot_be_learnt_is_refused_before_training() {
         let settings = TrainSettings { effects: vec![choice], ..TrainSettings::new(1) };
         check(&CASE.campaign, &split, &settings).expect_err("it can't be learnt")
     };
-    assert!(matches!(refusal(EffectChoice::named("expression")), TrainError::NoExpression));
-    assert!(matches!(refusal(EffectChoice::expression("pressure_pa")), TrainError::Constant(_)));
-    assert!(matches!(refusal(EffectChoice::expression("sqrt(-supply_v)")), TrainError::Constant(_)));
+    assert!(matches!(refusal(EffectChoice::named("expression")), TrainError::Effect(EffectError::NoExpression)));
+    assert!(matches!(refusal(EffectChoice::expression("pressure_pa")), TrainError::Effect(EffectError::Constant(_))));
+    assert!(matches!(
+        refusal(EffectChoice::expression("sqrt(-supply_v)")),
+        TrainError::Effect(EffectError::Constant(_))
+    ));
     let text = refusal(EffectChoice::expression("supply_w * level_g")).to_string();
     assert!(text.contains("column 1") && text.contains("did you mean `supply_v`?"), "{text}");
 }

@@ -44,9 +44,9 @@ mod whitening;
 pub use answer::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexplained, Unobservable, Verdict};
 
 use crate::campaign::Campaign;
+use crate::effect_choice::{EffectChoice, EffectError};
 use crate::model::Model;
 use crate::progress::Progress;
-use crate::train::{EffectChoice, TrainError};
 use crate::yardstick::Yardstick;
 use thiserror::Error;
 
@@ -64,7 +64,7 @@ pub enum DiagnoseError {
     Numbers(&'static str),
     /// The campaign lacks what the model's effects follow.
     #[error(transparent)]
-    Effect(#[from] TrainError),
+    Effect(#[from] EffectError),
 }
 
 /// Which physical effects `model` lacks, as far as `campaign` can tell.

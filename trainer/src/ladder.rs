@@ -2,10 +2,11 @@
 
 use crate::campaign::{Campaign, Split};
 use crate::compare::compare;
+use crate::effect_choice::EffectChoice;
 use crate::model::Model;
 use crate::progress::Progress;
 use crate::residuals::ResidualError;
-use crate::train::{EffectChoice, TrainError, TrainSettings, train};
+use crate::train::{TrainError, TrainSettings, train};
 use serde::Serialize;
 use thiserror::Error;
 

@@ -20,6 +20,7 @@ pub mod campaign;
 pub mod compare;
 pub mod cross_validation;
 pub mod diagnose;
+pub mod effect_choice;
 pub mod expression;
 pub mod fit;
 pub mod ladder;

@@ -1,8 +1,9 @@
 //! Training again as a model was trained: the same scale factor, seed, restarts, serial, effects, and the same runs held out.
 
 use crate::campaign::{Campaign, CampaignError, HoldOut, Split};
+use crate::effect_choice::EffectChoice;
 use crate::model::{Model, Provenance};
-use crate::train::{EffectChoice, TrainSettings};
+use crate::train::TrainSettings;
 
 /// The settings that made a model, with its effects to be fitted from where they are. Whatever made the network, effects
 /// are fitted beside it with the second-order method.

@@ -6,13 +6,14 @@ mod second_order;
 mod settings;
 mod task;
 
+pub use crate::effect_choice::EffectChoice;
 pub use backprop::{Backprop, Swarm};
 pub use baseline::Baseline;
-pub use settings::{Anchoring, EffectChoice, Method, TrainSettings};
+pub use settings::{Anchoring, Method, TrainSettings};
 
 use crate::campaign::{Campaign, Run, Split};
 use crate::diagnose;
-use crate::expression::ExpressionError;
+use crate::effect_choice::EffectError;
 use crate::fit::effects::Coefficients;
 use crate::fit::firefly::FireflyError;
 use crate::fit::gradient_descent::DescentError;
@@ -24,8 +25,6 @@ use crate::yardstick::Yardstick;
 use protocol::Weights;
 use task::Task;
 
-pub(crate) use second_order::{HIDDEN_SIZE, OUTPUT_SIZE};
-pub(crate) use task::choose;
 use thiserror::Error;
 
 /// A model and how it came about.
@@ -95,39 +94,9 @@ pub enum TrainError {
     /// Stopped before the first restart ended.
     #[error("cancelled before the first restart ended")]
     Cancelled,
-    /// No effect has this name.
-    #[error("there is no effect named `{0}`; `tempco effects` lists them")]
-    UnknownEffect(String),
-    /// The effect is real, but no device can foresee it.
-    #[error("effect `{0}` can't be compensated: no device can foresee it (`tempco effects {0}` says why)")]
-    NotOnDevice(String),
-    /// Only oscillators lock in, and only what is counted has a clock.
-    #[error("effect `{effect}` is one of signals that are frequencies, and this one is measured in `{unit}`")]
-    NeedsFrequency {
-        /// The effect.
-        effect: String,
-        /// Unit of the campaign's signal.
-        unit: String,
-    },
-    /// The campaign lacks the effect's channel.
-    #[error("effect `{effect}` follows the channel `{channel}`, which the campaign doesn't have")]
-    NoChannel {
-        /// The effect.
-        effect: String,
-        /// Its channel.
-        channel: String,
-    },
-    /// An effect of the user's own doesn't say what it depends on.
-    #[error("effect `expression` needs to be told what it depends on: --expression \"supply_v * temperature_rate\"")]
-    NoExpression,
-    /// It does, and that is wrong.
+    /// An effect that this campaign or no device can have.
     #[error(transparent)]
-    Expression(#[from] ExpressionError),
-    /// What it depends on doesn't vary.
-    #[error(
-        "expression `{0}` is the same in every row of the training runs, or has no value there: nothing can be learnt of it"
-    )]
-    Constant(String),
+    Effect(#[from] EffectError),
     /// The paper's methods train a network alone.
     #[error("effects can be fitted with the second-order method only")]
     EffectsNeedSecondOrder,
@@ -177,13 +146,26 @@ impl Search {
     }
 }
 
+fn measured(campaign: &Campaign, settings: &TrainSettings) -> Option<Yardstick> {
+    Yardstick::of_training(campaign, settings.scale_factor_hz_per_g, &settings.effects)
+}
+
+/// Settings in the units of the work.
+fn inside(settings: &TrainSettings, yardstick: &Yardstick) -> TrainSettings {
+    TrainSettings {
+        scale_factor_hz_per_g: settings.scale_factor_hz_per_g.map(|stated| yardstick.scale_factor_inside(stated)),
+        effects: yardstick.choices_inside(&settings.effects),
+        ..settings.clone()
+    }
+}
+
 /// Whether these settings could be trained, found out without training.
 ///
 /// # Errors
 /// [`TrainError`] says what is missing.
 pub fn check(campaign: &Campaign, split: &Split, settings: &TrainSettings) -> Result<(), TrainError> {
-    let yardstick = Yardstick::of_training(campaign, settings).ok_or(TrainError::Numbers)?;
-    Task::new(&yardstick.campaign(campaign), split, &yardstick.settings(settings), yardstick, &Quiet).map(|_| ())
+    let yardstick = measured(campaign, settings).ok_or(TrainError::Numbers)?;
+    Task::new(&yardstick.campaign(campaign), split, &inside(settings, &yardstick), yardstick, &Quiet).map(|_| ())
 }
 
 /// Trains on the split's training runs.
@@ -198,16 +180,16 @@ pub fn train(
     settings: &TrainSettings,
     progress: &dyn Progress,
 ) -> Result<Trained, TrainError> {
-    let yardstick = Yardstick::of_training(campaign, settings).ok_or(TrainError::Numbers)?;
-    let (scaled, inside) = (yardstick.campaign(campaign), yardstick.settings(settings));
-    let task = Task::new(&scaled, split, &inside, yardstick, progress)?;
+    let yardstick = measured(campaign, settings).ok_or(TrainError::Numbers)?;
+    let (scaled, own) = (yardstick.campaign(campaign), inside(settings, &yardstick));
+    let task = Task::new(&scaled, split, &own, yardstick, progress)?;
     if !settings.effects.is_empty() && settings.method != Method::SecondOrder {
         return Err(TrainError::EffectsNeedSecondOrder);
     }
     if settings.effects.iter().all(|choice| choice.start.is_some()) {
         return fitted(campaign, split, settings, task);
     }
-    let started = yardstick.settings(&started_well(campaign, split, settings, progress)?);
+    let started = inside(&started_well(campaign, split, settings, progress)?, &yardstick);
     fitted(campaign, split, settings, Task::new(&scaled, split, &started, yardstick, progress)?)
 }
 

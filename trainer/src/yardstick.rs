@@ -8,8 +8,8 @@
 mod units;
 
 use crate::campaign::{Campaign, Row};
+use crate::effect_choice::EffectChoice;
 use crate::model::Model;
-use crate::train::{EffectChoice, TrainSettings};
 use firmware_core::effect::{self, About, Parameter};
 use firmware_core::{Network, Scale};
 use std::borrow::Cow;
@@ -43,13 +43,16 @@ impl Yardstick {
     }
 
     /// For training: signals rise with references, and mostly lie above zero, as far as that is a matter of sign.
-    pub fn of_training(campaign: &Campaign, settings: &TrainSettings) -> Option<Self> {
-        let reach = settings.scale_factor_hz_per_g.map(|stated| half_span(campaign, signal) / stated.abs());
-        let expressions: Vec<&str> =
-            settings.effects.iter().filter_map(|choice| choice.expression.as_deref()).collect();
+    pub fn of_training(
+        campaign: &Campaign,
+        scale_factor_hz_per_g: Option<f64>,
+        effects: &[EffectChoice],
+    ) -> Option<Self> {
+        let reach = scale_factor_hz_per_g.map(|stated| half_span(campaign, signal) / stated.abs());
+        let expressions: Vec<&str> = effects.iter().filter_map(|choice| choice.expression.as_deref()).collect();
         let mut yardstick = Self::new(campaign, reach, &expressions)?;
         if expressions.is_empty() {
-            let rises = settings.scale_factor_hz_per_g.unwrap_or_else(|| covariance(campaign)) >= 0.0;
+            let rises = scale_factor_hz_per_g.unwrap_or_else(|| covariance(campaign)) >= 0.0;
             let is_above = middle(campaign, signal) >= 0.0;
             let (turned, negated) = match (rises, is_above) {
                 (true, true) => (false, false),
@@ -165,14 +168,9 @@ impl Yardstick {
         }
     }
 
-    /// Settings in the units of the work.
-    pub fn settings(&self, settings: &TrainSettings) -> TrainSettings {
-        let sign = if self.turned { -1.0 } else { 1.0 };
-        TrainSettings {
-            scale_factor_hz_per_g: settings.scale_factor_hz_per_g.map(|stated| sign * stated / self.factor),
-            effects: self.choices(&settings.effects, Self::coefficients_inside),
-            ..settings.clone()
-        }
+    /// A stated scale factor, Hz/g, in the units of the work.
+    pub fn scale_factor_inside(&self, stated: f64) -> f64 {
+        if self.turned { -stated / self.factor } else { stated / self.factor }
     }
 
     /// Choices whose starts are of the units of the work, in the campaign's.

@@ -6,10 +6,10 @@ use super::sum_channel::is_told;
 use super::whitening::Columns;
 use crate::campaign::Row;
 use crate::expression::Expression;
-use crate::fit::effects::{Chosen, Coefficients, Deed, deeds, mean_deed};
+use crate::fit::effects::{Chosen, Coefficients, Contribution, contributions, mean_contribution};
+use crate::fit::network::{HIDDEN_SIZE, OUTPUT_SIZE};
 use crate::model::Model;
 use crate::noise::{rms, sample_sigma_g};
-use crate::train::{HIDDEN_SIZE, OUTPUT_SIZE};
 use crate::yardstick::Yardstick;
 use firmware_core::activation::{sigmoid, slope};
 use firmware_core::effect::{self, About, Role};
@@ -119,7 +119,7 @@ impl Known {
         self.effects.iter().flat_map(|effect| effect.free().map(|_| is_told(effect.about)))
     }
 
-    /// Those whose deeds say what happens to the sum of the frequencies.
+    /// Those whose contributions say what happens to the sum of the frequencies.
     pub fn told(&self) -> Self {
         self.split(is_told).0
     }
@@ -138,8 +138,8 @@ impl Known {
     }
 }
 
-/// Mean deeds of the cells, run by run.
-pub(super) type Deeds = Vec<Vec<Deed>>;
+/// Mean contributions of the cells, run by run.
+pub(super) type Contributions = Vec<Vec<Contribution>>;
 
 /// Highest powers of frequency difference and temperature, and of both together, by which a retrained map may differ.
 const POWERS: (usize, usize, usize) = (3, 6, 7);
@@ -159,20 +159,22 @@ impl Instrument {
     }
 
     /// What the effects do in each cell.
-    pub fn deeds(&self, layout: &Layout, known: &Known) -> Deeds {
+    pub fn contributions(&self, layout: &Layout, known: &Known) -> Contributions {
         let (placed, others) = known.split(is_placed);
         let of = |stretch: &Stretch| {
             let course = |rows: &[Row], known: &Known| {
                 let some = !known.effects.is_empty();
-                some.then(|| deeds(rows, &known.effects, &known.coefficients, layout.max_gap_us)).flatten()
+                some.then(|| contributions(rows, &known.effects, &known.coefficients, layout.max_gap_us)).flatten()
             };
             let mut all = match course(&stretch.run.rows, &others) {
-                Some(course) => stretch.cells.iter().map(|cell| mean_deed(&course[cell.rows.clone()])).collect(),
-                None => vec![Deed::default(); stretch.cells.len()],
+                Some(course) => {
+                    stretch.cells.iter().map(|cell| mean_contribution(&course[cell.rows.clone()])).collect()
+                }
+                None => vec![Contribution::default(); stretch.cells.len()],
             };
             if let Some(course) = course(&stretch.gathered.rows, &placed) {
-                for (&(cell, share), deed) in stretch.gathered.places.iter().zip(course) {
-                    all[cell] = all[cell].plus(&deed.times(share));
+                for (&(cell, share), contribution) in stretch.gathered.places.iter().zip(course) {
+                    all[cell] = all[cell].plus(&contribution.times(share));
                 }
             }
             all
@@ -180,35 +182,45 @@ impl Instrument {
         layout.stretches.par_iter().map(of).collect()
     }
 
-    /// Reading minus reference in each cell, µg, under these deeds.
-    pub fn residual_ug(&self, layout: &Layout, deeds: &Deeds) -> Columns {
-        let of = |(stretch, deeds): (&Stretch, &Vec<Deed>)| {
-            let values = stretch.cells.iter().zip(deeds).map(|(cell, deed)| self.cell_residual_ug(layout, cell, deed));
+    /// Reading minus reference in each cell, µg, under these contributions.
+    pub fn residual_ug(&self, layout: &Layout, contributions: &Contributions) -> Columns {
+        let of = |(stretch, contributions): (&Stretch, &Vec<Contribution>)| {
+            let values = stretch
+                .cells
+                .iter()
+                .zip(contributions)
+                .map(|(cell, contribution)| self.cell_residual_ug(layout, cell, contribution));
             DMatrix::from_iterator(stretch.cells.len(), 1, values)
         };
-        layout.stretches.par_iter().zip(deeds).map(of).collect()
+        layout.stretches.par_iter().zip(contributions).map(of).collect()
     }
 
-    /// The same under `own` deeds too, beside `held` ones that leave `before`.
-    pub fn residual_beside_ug(&self, layout: &Layout, held: &Deeds, before: &Columns, own: &Deeds) -> Columns {
+    /// The same under `own` contributions too, beside `held` ones that leave `before`.
+    pub fn residual_beside_ug(
+        &self,
+        layout: &Layout,
+        held: &Contributions,
+        before: &Columns,
+        own: &Contributions,
+    ) -> Columns {
         let of = |(run, stretch): (usize, &Stretch)| {
             let value = |(index, cell): (usize, &Cell)| {
-                let deed = &own[run][index];
+                let contribution = &own[run][index];
                 // What only adds to the output asks nothing of the network.
-                if deed.moves_nothing() {
-                    return before[run][(index, 0)] - deed.bias_g * UG;
+                if contribution.moves_nothing() {
+                    return before[run][(index, 0)] - contribution.bias_g * UG;
                 }
-                self.cell_residual_ug(layout, cell, &held[run][index].plus(deed))
+                self.cell_residual_ug(layout, cell, &held[run][index].plus(contribution))
             };
             DMatrix::from_iterator(stretch.cells.len(), 1, stretch.cells.iter().enumerate().map(value))
         };
         layout.stretches.par_iter().enumerate().map(of).collect()
     }
 
-    fn cell_residual_ug(&self, layout: &Layout, cell: &Cell, deed: &Deed) -> f64 {
-        let x = cell.x - deed.delta_f_hz / layout.scale.delta_f_half_span_hz;
-        let t = cell.t + deed.temperature_c / layout.scale.temperature_half_span_c;
-        (self.reading_g(x, t) - deed.bias_g - cell.level_g) * UG
+    fn cell_residual_ug(&self, layout: &Layout, cell: &Cell, contribution: &Contribution) -> f64 {
+        let x = cell.x - contribution.delta_f_hz / layout.scale.delta_f_half_span_hz;
+        let t = cell.t + contribution.temperature_c / layout.scale.temperature_half_span_c;
+        (self.reading_g(x, t) - contribution.bias_g - cell.level_g) * UG
     }
 
     /// How the reading can change by retraining, µg per expected change: polynomials and the network's tangents.

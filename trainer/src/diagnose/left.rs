@@ -1,7 +1,7 @@
 //! What effects leave of the residual and of the sum of the frequencies.
 
 use super::case::Case;
-use super::instrument::{Deeds, Instrument, Known};
+use super::instrument::{Contributions, Instrument, Known};
 use super::layout::Layout;
 use super::sum_channel::SumChannel;
 use super::whitening::Columns;
@@ -15,12 +15,12 @@ pub(super) struct Left {
     pub sum: Option<Columns>,
 }
 
-/// Effects whose deeds don't change while others are fitted.
+/// Effects whose contributions don't change while others are fitted.
 #[derive(Clone)]
 pub(super) struct Held {
-    deeds: Deeds,
+    contributions: Contributions,
     /// Of those that say what they do to the sum.
-    told: Deeds,
+    told: Contributions,
     /// What they leave by themselves.
     left: Left,
 }
@@ -28,10 +28,11 @@ pub(super) struct Held {
 impl Held {
     /// These effects.
     pub fn new(layout: &Layout, instrument: &Instrument, sum: Option<&SumChannel>, known: &Known) -> Self {
-        let (deeds, told) = (instrument.deeds(layout, known), instrument.deeds(layout, &known.told()));
-        let delta = instrument.residual_ug(layout, &deeds);
+        let (contributions, told) =
+            (instrument.contributions(layout, known), instrument.contributions(layout, &known.told()));
+        let delta = instrument.residual_ug(layout, &contributions);
         let sum = sum.map(|channel| channel.residual_under(layout, &[&told]));
-        Self { deeds, told, left: Left { delta, sum } }
+        Self { contributions, told, left: Left { delta, sum } }
     }
 }
 
@@ -48,13 +49,13 @@ impl Case<'_> {
 
     /// What these effects leave together with those that are held.
     pub fn left_beside(&self, held: &Held, known: &Known) -> Left {
-        let own = self.instrument.deeds(&self.layout, known);
-        let delta = self.instrument.residual_beside_ug(&self.layout, &held.deeds, &held.left.delta, &own);
+        let own = self.instrument.contributions(&self.layout, known);
+        let delta = self.instrument.residual_beside_ug(&self.layout, &held.contributions, &held.left.delta, &own);
         let told = known.told();
         let sum = match &self.sum {
             Some(channel) if !told.effects.is_empty() => {
                 let all_told = told.effects.len() == known.effects.len();
-                let own = if all_told { own } else { self.instrument.deeds(&self.layout, &told) };
+                let own = if all_told { own } else { self.instrument.contributions(&self.layout, &told) };
                 Some(channel.residual_under(&self.layout, &[&held.told, &own]))
             }
             _ => held.left.sum.clone(),

@@ -83,7 +83,7 @@ impl Case<'_> {
         let adapted = Bench::new(&self.layout, noise, &left, &freedom)?.adapted(&left, &freedom);
         let mut fine = self.layout.by_sample();
         fine.remember(known);
-        let mut values: Columns = self.instrument.residual_ug(&fine, &self.instrument.deeds(&fine, known));
+        let mut values: Columns = self.instrument.residual_ug(&fine, &self.instrument.contributions(&fine, known));
         for (run, stretch) in self.layout.stretches.iter().enumerate() {
             for (index, cell) in stretch.cells.iter().enumerate() {
                 let change = adapted[run][(index, 0)] - left[run][(index, 0)];

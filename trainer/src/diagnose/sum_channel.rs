@@ -4,11 +4,11 @@
 //! moves both by the same fraction; heat flowing from one resonator to the other cancels in the sum. So a
 //! hypothesis about the difference predicts the sum, or leaves it free, and is held to it.
 
-use super::instrument::{Deeds, polynomials};
+use super::instrument::{Contributions, polynomials};
 use super::layout::{Cell, Layout};
 use super::whitening::Columns;
 use crate::campaign::Row;
-use crate::fit::effects::Deed;
+use crate::fit::effects::Contribution;
 use crate::noise::{normal_sigma, rms};
 use firmware_core::effect::About;
 use nalgebra::{DMatrix, DVector, SVD};
@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector, SVD};
 /// What an effect does to the sum of the frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Response {
-    /// What its deeds say: warmer resonators, another clock.
+    /// What its contributions say: warmer resonators, another clock.
     Told,
     /// In proportion to its bias, by at most so many times what the difference moves.
     Free(f64),
@@ -39,7 +39,7 @@ pub(super) fn response(about: &About) -> Response {
     }
 }
 
-/// Whether the deeds of this effect say what happens to the sum.
+/// Whether the contributions of this effect say what happens to the sum.
 pub(super) fn is_told(about: &About) -> bool {
     response(about) == Response::Told
 }
@@ -98,15 +98,21 @@ impl SumChannel {
         Some(channel)
     }
 
-    /// The residual with these deeds taken out, mHz.
-    pub fn residual_under(&self, layout: &Layout, deeds: &[&Deeds]) -> Columns {
+    /// The residual with these contributions taken out, mHz.
+    pub fn residual_under(&self, layout: &Layout, contributions: &[&Contributions]) -> Columns {
         let mut residual = self.residual.clone();
         for (run, (row, cells)) in residual.iter_mut().zip(&self.cells).enumerate() {
-            let of = |index| deeds.iter().fold(Deed::default(), |all, deeds| all.plus(&deeds[run][index]));
-            let deeds: Vec<Deed> = (0..cells.len()).map(of).collect();
-            let shares = clock_shares(layout, &layout.stretches[run].cells, &deeds);
-            for (index, ((slope, sum), (deed, share))) in cells.iter().zip(deeds.iter().zip(shares)).enumerate() {
-                row[(index, 0)] -= slope * deed.temperature_c + share * sum;
+            let of = |index| {
+                contributions
+                    .iter()
+                    .fold(Contribution::default(), |all, contributions| all.plus(&contributions[run][index]))
+            };
+            let contributions: Vec<Contribution> = (0..cells.len()).map(of).collect();
+            let shares = clock_shares(layout, &layout.stretches[run].cells, &contributions);
+            for (index, ((slope, sum), (contribution, share))) in
+                cells.iter().zip(contributions.iter().zip(shares)).enumerate()
+            {
+                row[(index, 0)] -= slope * contribution.temperature_c + share * sum;
             }
         }
         residual
@@ -131,15 +137,16 @@ impl SumChannel {
 }
 
 /// By which fraction a clock would have to be off in each cell for what it does to the difference; only clocks move the
-/// difference in proportion to itself, so other effects' deeds must not come here. Where the difference is too small to
+/// difference in proportion to itself, so other effects' contributions must not come here. Where the difference is too small to
 /// tell, the clock is as it was a moment ago.
-fn clock_shares(layout: &Layout, cells: &[Cell], deeds: &[Deed]) -> Vec<f64> {
+fn clock_shares(layout: &Layout, cells: &[Cell], contributions: &[Contribution]) -> Vec<f64> {
     let delta_f_hz =
         |cell: &Cell| layout.scale.delta_f_zero_uhz as f64 * 1e-6 + cell.x * layout.scale.delta_f_half_span_hz;
     let least_hz = LEAST_DELTA_F * layout.scale.delta_f_half_span_hz;
     let tells = |cell: &&Cell| delta_f_hz(cell).abs() >= least_hz;
-    let share = |(cell, deed): (&Cell, &Deed)| tells(&cell).then(|| deed.delta_f_hz / delta_f_hz(cell));
-    let told: Vec<Option<f64>> = cells.iter().zip(deeds).map(share).collect();
+    let share =
+        |(cell, contribution): (&Cell, &Contribution)| tells(&cell).then(|| contribution.delta_f_hz / delta_f_hz(cell));
+    let told: Vec<Option<f64>> = cells.iter().zip(contributions).map(share).collect();
     let first = told.iter().flatten().next().copied().unwrap_or_default();
     let last = |last: &mut f64, told: &Option<f64>| {
         *last = told.unwrap_or(*last);

@@ -90,8 +90,8 @@ impl Chosen {
     pub fn course_g(&self, run: &Run, max_gap_us: u32) -> Vec<f64> {
         let value = |parameter: &Parameter| if parameter.role == Role::Amplitude { 1.0 } else { parameter.start };
         let values = vec![self.about.parameters.iter().map(value).collect()];
-        let deeds = deeds(&run.rows, std::slice::from_ref(self), &Coefficients { values }, max_gap_us);
-        deeds.unwrap_or_default().iter().map(|deed| deed.bias_g).collect()
+        let contributions = contributions(&run.rows, std::slice::from_ref(self), &Coefficients { values }, max_gap_us);
+        contributions.unwrap_or_default().iter().map(|contribution| contribution.bias_g).collect()
     }
 }
 
@@ -129,7 +129,7 @@ impl Coefficients {
 
 /// What the effects do at one sample.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Deed {
+pub(crate) struct Contribution {
     /// Resonators minus thermometer, °C.
     pub temperature_c: f64,
     /// Frequency difference with the effects minus without, Hz.
@@ -138,7 +138,7 @@ pub(crate) struct Deed {
     pub bias_g: f64,
 }
 
-impl Deed {
+impl Contribution {
     /// Both.
     pub(crate) fn plus(&self, other: &Self) -> Self {
         Self {
@@ -164,28 +164,28 @@ impl Deed {
 }
 
 /// Runs the effects over a run, row by row; `None` if the core refuses the coefficients.
-pub(crate) fn deeds(
+pub(crate) fn contributions(
     rows: &[Row],
     effects: &[Chosen],
     coefficients: &Coefficients,
     max_gap_us: u32,
-) -> Option<Vec<Deed>> {
+) -> Option<Vec<Contribution>> {
     let mut terms = Terms::<f64>::new(max_gap_us);
     for (effect, values) in effects.iter().zip(&coefficients.values) {
         let program = effect.expression.as_ref().map_or(&[][..], |expression| expression.code());
         terms.push(effect.about.id, effect.channel, usize::MAX, values.iter().copied(), program).ok()?;
     }
-    let deed = |row: &Row| {
+    let contribution = |row: &Row| {
         let now = Observation::<f64>::new(&row.sample, &FROM_ZERO);
         terms.advance(&row.sample, row.reference_g);
         let disturbance = terms.disturbance(&now, row.reference_g);
-        Deed {
+        Contribution {
             temperature_c: disturbance.temperature_c,
             delta_f_hz: disturbance.delta_f_hz,
             bias_g: terms.bias_g(&now, row.reference_g),
         }
     };
-    Some(rows.iter().map(deed).collect())
+    Some(rows.iter().map(contribution).collect())
 }
 
 /// Effects look at absolute quantities only, so the zeros don't matter here.
@@ -262,18 +262,20 @@ impl<'a> MovedRows<'a> {
     fn place(&self, parameters: &[f64], mut put: impl FnMut(usize, usize, [f64; 3])) {
         let coefficients = Coefficients::from_parameters(self.effects, parameters);
         for (group, (run, cells)) in self.runs.iter().enumerate() {
-            let Some(deeds) = deeds(&run.rows, self.effects, &coefficients, self.max_gap_us) else { continue };
+            let Some(contributions) = contributions(&run.rows, self.effects, &coefficients, self.max_gap_us) else {
+                continue;
+            };
             for (index, cell) in cells.iter().enumerate() {
-                put(group, index, self.placed(cell, &mean_deed(&deeds[cell.rows.clone()])));
+                put(group, index, self.placed(cell, &mean_contribution(&contributions[cell.rows.clone()])));
             }
         }
     }
 
     /// Inputs and target of a cell on which the effects act: the compensator's formula, read backwards.
-    fn placed(&self, cell: &Still, deed: &Deed) -> [f64; 3] {
-        let x = cell.x - deed.delta_f_hz / self.scale.delta_f_half_span_hz;
-        let t = cell.t + deed.temperature_c / self.scale.temperature_half_span_c;
-        [x, t, (cell.reference_g + deed.bias_g - self.line.evaluate(x, t)) / self.unit_g]
+    fn placed(&self, cell: &Still, contribution: &Contribution) -> [f64; 3] {
+        let x = cell.x - contribution.delta_f_hz / self.scale.delta_f_half_span_hz;
+        let t = cell.t + contribution.temperature_c / self.scale.temperature_half_span_c;
+        [x, t, (cell.reference_g + contribution.bias_g - self.line.evaluate(x, t)) / self.unit_g]
     }
 }
 
@@ -290,9 +292,9 @@ fn weigh(run: usize, cell: &Still, noise: &Components) -> ValueRow {
     ValueRow { x: cell.x, t: cell.t, y: 0.0, weight: noise.weight(run, samples), samples }
 }
 
-pub(crate) fn mean_deed(deeds: &[Deed]) -> Deed {
-    let share = 1.0 / deeds.len() as f64;
-    deeds.iter().fold(Deed::default(), |sum, deed| sum.plus(&deed.times(share)))
+pub(crate) fn mean_contribution(contributions: &[Contribution]) -> Contribution {
+    let share = 1.0 / contributions.len() as f64;
+    contributions.iter().fold(Contribution::default(), |sum, contribution| sum.plus(&contribution.times(share)))
 }
 
 impl Rows for MovedRows<'_> {

@@ -27,6 +27,11 @@ use firmware_core::activation::{curvature, sigmoid, slope};
 use nalgebra::{Cholesky, Const, Dyn, OMatrix, SMatrix, SVector};
 use protocol::limits::HIDDEN;
 
+/// Expected size of an output weight, in units of the departure from the line.
+pub const OUTPUT_SIZE: f64 = 10.0;
+/// Expected size of a hidden weight. A unit this steep bends over the whole domain: an instrument is
+/// smooth until data insist on the contrary. `docs/decisions/0003-anchors.md` has the comparison.
+pub const HIDDEN_SIZE: f64 = 1.0;
 /// Hidden weights: input x, input t, threshold of each unit in turn.
 pub const NONLINEAR: usize = 3 * HIDDEN;
 /// Constant, x, t, x·t of the first-order instrument, then the output weights.

@@ -2,9 +2,10 @@
 
 use super::unconstrained;
 use crate::campaign::{Campaign, Split};
+use crate::effect_choice::EffectChoice;
 use crate::fit::gradient_descent;
 use crate::progress::Progress;
-use crate::train::{Backprop, EffectChoice, Method, TrainError, TrainSettings, Trained, train};
+use crate::train::{Backprop, Method, TrainError, TrainSettings, Trained, train};
 
 /// One method of the tables.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,9 @@ use super::{Anchoring, Candidate, Restart, Search, Task};
 use crate::fit::dataset::Datum;
 use crate::fit::effects::{Coefficients, Frame, MovedRows};
 use crate::fit::levenberg_marquardt::{Limits, Termination, minimise};
-use crate::fit::network::{Anchors, Fit, Group, NONLINEAR, NetworkProblem, Prior, Rows, SlopeRow, ValueRow};
+use crate::fit::network::{
+    Anchors, Fit, Group, HIDDEN_SIZE, NONLINEAR, NetworkProblem, OUTPUT_SIZE, Prior, Rows, SlopeRow, ValueRow,
+};
 use crate::fit::polynomial::{MOST_T, Polynomial};
 use crate::fit::random::{between, stream};
 use crate::noise::{Components, Mean};
@@ -16,11 +18,6 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// Expected size of an output weight, in units of the departure from the line.
-pub(crate) const OUTPUT_SIZE: f64 = 10.0;
-/// Expected size of a hidden weight. A unit this steep bends over the whole domain: an instrument is
-/// smooth until data insist on the contrary. `docs/decisions/0003-anchors.md` has the comparison.
-pub(crate) const HIDDEN_SIZE: f64 = 1.0;
 /// How far a resonator's slope may wander from the campaign's smooth scale factor before data must insist.
 const SLOPE_ALLOWANCE: f64 = 300e-6;
 /// How far the instrument may depart from a smooth one before data must insist, in units of its

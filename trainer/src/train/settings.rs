@@ -2,8 +2,7 @@
 
 use super::TrainError;
 use super::backprop::{Backprop, Swarm};
-use crate::expression::alike;
-use crate::model::{Model, ModelEffect};
+use crate::effect_choice::EffectChoice;
 use protocol::limits::MAX_NAME;
 
 /// How the weights are found.
@@ -59,64 +58,6 @@ pub enum Anchoring {
     Values,
     /// Both; the default.
     Both,
-}
-
-/// The effect that a user's own expression is.
-const EXPRESSION: &str = "expression";
-
-/// A physical effect to fit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EffectChoice {
-    /// Its name.
-    pub name: String,
-    /// The campaign's channel that it follows, where not the effect's usual one.
-    pub channel: Option<String>,
-    /// What an effect of the user's own depends on.
-    pub expression: Option<String>,
-    /// Coefficients to start from, in the effect's order; `None` searches.
-    pub start: Option<Vec<f64>>,
-}
-
-impl EffectChoice {
-    /// The effect of this name, searched from scratch.
-    #[must_use]
-    pub fn named(name: &str) -> Self {
-        Self { name: name.to_owned(), channel: None, expression: None, start: None }
-    }
-
-    /// An effect of one's own, searched from scratch.
-    #[must_use]
-    pub fn expression(text: &str) -> Self {
-        Self { expression: Some(text.to_owned()), ..Self::named(EXPRESSION) }
-    }
-
-    /// What a person calls it: its name, or the expression that it is.
-    #[must_use]
-    pub fn title(&self) -> &str {
-        self.expression.as_deref().unwrap_or(&self.name)
-    }
-
-    /// Whether both are the same effect.
-    #[must_use]
-    pub fn is_same(&self, other: &Self) -> bool {
-        match (&self.expression, &other.expression) {
-            (Some(text), Some(other)) => alike(text, other),
-            (None, None) => self.name == other.name,
-            _ => false,
-        }
-    }
-
-    /// The effects of a model, to be fitted anew from where they are.
-    #[must_use]
-    pub fn of(model: &Model) -> Vec<Self> {
-        let choice = |effect: &ModelEffect| Self {
-            name: effect.name.clone(),
-            channel: effect.channel.clone(),
-            expression: effect.expression.clone(),
-            start: effect.coefficients(&model.channels).ok(),
-        };
-        model.effects.iter().map(choice).collect()
-    }
 }
 
 impl TrainSettings {

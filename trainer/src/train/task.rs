@@ -1,19 +1,19 @@
 //! What every method starts from, and how a method's best becomes a model.
 
 use super::baseline::Baseline;
-use super::settings::{EffectChoice, TrainSettings};
+use super::settings::TrainSettings;
 use super::{Candidate, TrainError};
 use crate::campaign::{Campaign, Run, Split};
-use crate::expression::Expression;
+use crate::effect_choice::choose;
 use crate::fit::dataset::{Datum, InputScale};
 use crate::fit::effects::Chosen;
 use crate::fit::neighbours::merged;
 use crate::fit::polynomial::{MOST_T, Polynomial};
 use crate::model::{Model, ModelDomain, ModelEffect, ModelNetwork, ModelScaling, Provenance, Units};
-use crate::noise::{Components, Mean, rms, sample_sigma_g};
+use crate::noise::{Components, Mean, sample_sigma_g};
 use crate::progress::Progress;
 use crate::yardstick::Yardstick;
-use firmware_core::effect::{self, Parameter};
+use firmware_core::effect::Parameter;
 use protocol::Weights;
 
 /// What every method starts from.
@@ -166,57 +166,6 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Finds the effect and its channel.
-pub(crate) fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) -> Result<Chosen, TrainError> {
-    let about = effect::about(&choice.name).ok_or_else(|| TrainError::UnknownEffect(choice.name.clone()))?;
-    if !about.is_on_device() {
-        return Err(TrainError::NotOnDevice(choice.name.clone()));
-    }
-    if about.needs_frequency() && !campaign.quantity.is_frequency() {
-        let unit = campaign.quantity.signal_unit.clone();
-        return Err(TrainError::NeedsFrequency { effect: choice.name.clone(), unit });
-    }
-    if about.takes_program() {
-        return choose_expression(about, choice, campaign, runs);
-    }
-    let Some(usual) = about.channel else { return Ok(Chosen::of(about)) };
-    let name = choice.channel.as_deref().unwrap_or(usual);
-    let channel = campaign
-        .channels
-        .iter()
-        .position(|channel| channel == name)
-        .ok_or_else(|| TrainError::NoChannel { effect: choice.name.clone(), channel: name.to_owned() })?;
-    let values: Vec<f64> = runs
-        .iter()
-        .flat_map(|run| &run.rows)
-        .filter_map(|row| row.sample.channels.get(channel))
-        .map(|micro| *micro as f64 * 1e-6)
-        .collect();
-    Ok(Chosen { channel, origin: crate::metrics::mean(&values), ..Chosen::of(about) })
-}
-
-/// Reads the expression and finds out how large it is.
-fn choose_expression(
-    about: &'static effect::About,
-    choice: &EffectChoice,
-    campaign: &Campaign,
-    runs: &[&Run],
-) -> Result<Chosen, TrainError> {
-    let text = choice.expression.as_deref().ok_or(TrainError::NoExpression)?;
-    let expression = Some(Expression::parse(text, &campaign.channels)?);
-    let chosen = Chosen { expression, ..Chosen::of(about) };
-    let max_gap_us = campaign.max_gap_us();
-    let course_g: Vec<f64> = runs.iter().flat_map(|run| chosen.course_g(run, max_gap_us)).collect();
-    let mean_g = crate::metrics::mean(&course_g);
-    let size = rms(&course_g);
-    let scatter = rms(course_g.iter().map(|value_g| value_g - mean_g).collect::<Vec<_>>().iter());
-    if scatter > size * LEAST_VARIATION {
-        Ok(Chosen { size, ..chosen })
-    } else {
-        Err(TrainError::Constant(text.to_owned()))
-    }
-}
-
 /// A fitted effect as the model file keeps it.
 fn fitted(effect: &Chosen, values: &[f64], campaign: &Campaign) -> ModelEffect {
     let idle = |parameter: &Parameter| effect.expression.as_ref().is_some_and(|text| text.leaves_idle(parameter));
@@ -231,7 +180,5 @@ fn fitted(effect: &Chosen, values: &[f64], campaign: &Campaign) -> ModelEffect {
 
 /// Share of the half span by which the calibrated domain exceeds the training data.
 const DOMAIN_MARGIN: f64 = 0.02;
-/// What varies by less than this share of its size can't be told from the bias.
-const LEAST_VARIATION: f64 = 1e-6;
 /// Noise is never taken to be less than this, so that noiseless data give no division by zero, g.
 const LEAST_SIGMA_G: f64 = 1e-9;
