@@ -6,12 +6,11 @@ use firmware_sim::twin;
 use std::ops::ControlFlow;
 use tempfile::TempDir;
 use trainer::campaign::{Campaign, HoldOut, ReadOptions};
-use trainer::diagnose::{Finding, diagnose};
+use trainer::diagnose::{Finding, LEAST_DELTA_BIC, diagnose};
 use trainer::progress::Quiet;
 use trainer::train::{TrainSettings, train};
 
 const SHORT: &str = include_str!("scenarios/short.toml");
-const ENOUGH: f64 = 25.0;
 
 /// What a diagnosis finds where a warm-up of so many times the noise is hidden.
 fn findings(times_noise: f64) -> Vec<Finding> {
@@ -37,7 +36,7 @@ fn findings(times_noise: f64) -> Vec<Finding> {
 #[test]
 fn what_noise_could_be_is_not_named() {
     for times_noise in [0.2, 0.25] {
-        let named: Vec<_> = findings(times_noise).into_iter().map(|found| (found.effect, found.evidence)).collect();
+        let named: Vec<_> = findings(times_noise).into_iter().map(|found| (found.effect, found.delta_bic)).collect();
         assert!(named.is_empty(), "{times_noise} times the noise: {named:?}");
     }
 }
@@ -48,6 +47,10 @@ fn a_small_effect_is_named_as_soon_as_noise_could_not_be_it() {
         let found = findings(times_noise);
         let [only] = found.as_slice() else { panic!("{times_noise} times the noise: {found:?}") };
         assert_eq!(only.effect, "warm-up");
-        assert!((ENOUGH..150.0).contains(&only.evidence), "{times_noise} times the noise: {}", only.evidence);
+        assert!(
+            (LEAST_DELTA_BIC..150.0).contains(&only.delta_bic),
+            "{times_noise} times the noise: {}",
+            only.delta_bic
+        );
     }
 }

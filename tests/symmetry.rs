@@ -93,7 +93,7 @@ fn same(what: &str, one: &Answer, other: &Answer, factor: f64, power: impl Fn(&s
     assert_eq!(one.findings.len(), other.findings.len(), "{what}: {one:#?} {other:#?}");
     for (a, b) in one.findings.iter().zip(&other.findings) {
         assert_eq!((&a.effect, &a.confounded_with), (&b.effect, &b.confounded_with), "{what}");
-        near(what, a.evidence, b.evidence);
+        near(what, a.delta_bic, b.delta_bic);
         for ((name, a), (other, b)) in a.parameters.iter().zip(&b.parameters) {
             assert_eq!(name, other);
             near(&format!("{what}: {name}"), a.value * factor.powi(power(name)), b.value);

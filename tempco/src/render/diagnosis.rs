@@ -3,7 +3,9 @@
 use crate::table::Table;
 use firmware_core::effect::{About, about};
 use std::fmt::Write;
-use trainer::diagnose::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexplained, Unobservable, Verdict};
+use trainer::diagnose::{
+    Dependence, Diagnosis, Estimate, Finding, LEAST_DELTA_BIC, Noise, Unexplained, Unobservable, Verdict,
+};
 
 /// The whole diagnosis.
 pub fn text(diagnosis: &Diagnosis) -> String {
@@ -27,19 +29,19 @@ pub fn first_to_add(diagnosis: &Diagnosis) -> Option<&str> {
 
 /// How far the residual falls with the findings, and where to.
 fn falls(diagnosis: &Diagnosis, with: &str) -> String {
-    let Diagnosis { residual_ug, residual_after_ug, foreseeable_ug, foreseeable_after_ug, .. } = diagnosis;
+    let Diagnosis { residual_ug, residual_after_ug, predictable_ug, predictable_after_ug, .. } = diagnosis;
     let verb = if residual_after_ug < residual_ug { "falls" } else { "goes" };
     // A run's own offset can be larger than all that a model can do about the rest.
-    let foreseeable = if foreseeable_ug == residual_ug {
+    let predictable = if predictable_ug == residual_ug {
         String::new()
     } else {
         format!(
-            ";\nwithout what is new in every run (offset, mounting, what was brought along from before it) from \
-             {foreseeable_ug:.2} to {foreseeable_after_ug:.2} µg"
+            ";\nwithout what is new in every run (offset, mounting, initial states of effects with a memory) from \
+             {predictable_ug:.2} to {predictable_after_ug:.2} µg"
         )
     };
     format!(
-        "{with}, the held-out residual {verb} from {residual_ug:.2} to {residual_after_ug:.2} µg{foreseeable}: {:.0} % of \
+        "{with}, the held-out residual {verb} from {residual_ug:.2} to {residual_after_ug:.2} µg{predictable}: {:.0} % of \
          what exceeds the noise.\nNoise from sample to sample is {:.2} µg.",
         diagnosis.explainable * 100.0,
         diagnosis.noise_floor_ug
@@ -113,17 +115,18 @@ fn findings(findings: &[Finding]) -> String {
     if findings.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(["effect, in the order to add", "held-out before µg", "after µg", "evidence"]);
+    let mut table = Table::new(["effect, in the order to add", "held-out before µg", "after µg", "ΔBIC"]);
     for finding in findings {
         table.row([
             finding.effect.clone(),
             format!("{:.2}", finding.residual_before_ug),
             format!("{:.2}", finding.residual_after_ug),
-            format!("{:.0}", finding.evidence),
+            format!("{:.0}", finding.delta_bic),
         ]);
     }
-    let definition =
-        "  evidence = twice the gain in log likelihood, less what the parameters are worth; above 10 is strong";
+    let definition = format!(
+        "  ΔBIC = twice the log likelihood ratio, less ln n for each parameter; an effect needs {LEAST_DELTA_BIC:.0}"
+    );
     let each: String = findings.iter().map(explained).collect();
     format!("\n{table}{definition}\n{each}")
 }
@@ -147,7 +150,7 @@ fn explained(finding: &Finding) -> String {
         let _ = writeln!(text, "  To tell them apart: {experiment}");
     }
     if about.is_some_and(|about| !about.is_on_device()) {
-        let _ = writeln!(text, "  No instrument can foresee it: it can be known, not compensated.");
+        let _ = writeln!(text, "  No instrument can predict it: it can be known, not compensated.");
     }
     text
 }

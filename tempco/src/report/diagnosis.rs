@@ -1,11 +1,11 @@
-//! The diagnosis with its evidence.
+//! The diagnosis with its ΔBIC.
 
 use super::table::{Column, Table, figure};
 use crate::page::escaped;
 use crate::render::diagnosis::{parameters, verdict};
 use firmware_core::effect::about;
 use std::fmt::Write;
-use trainer::diagnose::{Diagnosis, Finding};
+use trainer::diagnose::{Diagnosis, Finding, LEAST_DELTA_BIC};
 
 /// What is missing, how sure that is, and what the campaign can't show.
 pub fn section(diagnosis: &Diagnosis) -> String {
@@ -34,19 +34,20 @@ fn findings(findings: &[Finding]) -> String {
         Column::Text("effect, in the order to add"),
         Column::Figure("held-out before, µg"),
         Column::Figure("after, µg"),
-        Column::Figure("evidence"),
+        Column::Figure("ΔBIC"),
         Column::Text("parameters"),
         Column::Text("would explain the same"),
     ];
-    let caption =
-        "Evidence is twice the gain in log likelihood, less what the parameters are worth; above 10 is strong.";
-    let mut table = Table::new(caption, columns);
+    let caption = format!(
+        "ΔBIC is twice the log likelihood ratio, less ln n for each parameter; an effect needs {LEAST_DELTA_BIC:.0}."
+    );
+    let mut table = Table::new(&caption, columns);
     for finding in findings {
         table.row([
             finding.effect.clone(),
             figure(finding.residual_before_ug),
             figure(finding.residual_after_ug),
-            format!("{:.0}", finding.evidence),
+            format!("{:.0}", finding.delta_bic),
             parameters(finding).join(", "),
             finding.confounded_with.join(", "),
         ]);

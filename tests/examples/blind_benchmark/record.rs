@@ -160,12 +160,12 @@ fn write_answer(f: &mut fmt::Formatter<'_>, diagnosis: &Diagnosis, judgement: &J
 }
 
 fn finding_words(finding: &Finding) -> String {
-    let Finding { effect, evidence, residual_before_ug, residual_after_ug, confounded_with, parameters, .. } = finding;
+    let Finding { effect, delta_bic, residual_before_ug, residual_after_ug, confounded_with, parameters, .. } = finding;
     let parameters: Vec<String> = parameters
         .iter()
         .map(|(name, estimate)| format!("{name}={:.3e}±{:.1e}", estimate.value, estimate.sigma))
         .collect();
-    let mut words = format!("{effect} ev {evidence:.0} {residual_before_ug:.2}→{residual_after_ug:.2}");
+    let mut words = format!("{effect} ΔBIC {delta_bic:.0} {residual_before_ug:.2}→{residual_after_ug:.2}");
     if !parameters.is_empty() {
         words += &format!(" [{}]", parameters.join(" "));
     }

@@ -1,7 +1,7 @@
 //! What a diagnosis says. Data; whoever shows it formats it.
 
 use firmware_core::effect::{self, About};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 
 /// Which physical effects a model lacks, as far as the measurements can tell.
@@ -13,14 +13,14 @@ pub struct Diagnosis {
     pub residual_ug: f64,
     /// Held-out residual with all findings added, µg.
     pub residual_after_ug: f64,
-    /// The same two without what is each run's own, µg: its offset, its mounting, and what effects with a memory brought
-    /// along from before. Nobody can foresee that. Of fewer than three runs nothing is left out.
-    pub foreseeable_ug: f64,
+    /// The same two without what is each run's own, µg: its offset, its mounting, and the initial states of
+    /// effects with a memory. Nobody can predict that. Of fewer than three runs nothing is left out.
+    pub predictable_ug: f64,
     /// With all findings added.
-    pub foreseeable_after_ug: f64,
+    pub predictable_after_ug: f64,
     /// Noise from sample to sample that no model could remove, µg.
     pub noise_floor_ug: f64,
-    /// Share of the foreseeable residual's square above the noise that the findings remove, 0 to 1.
+    /// Share of the predictable residual's square above the noise that the findings remove, 0 to 1.
     pub explainable: f64,
     /// What is missing, in the order in which it should be added.
     pub findings: Vec<Finding>,
@@ -45,8 +45,8 @@ impl Diagnosis {
             residual_ug,
             residual_after_ug,
             noise_floor_ug,
-            foreseeable_ug,
-            foreseeable_after_ug,
+            predictable_ug,
+            predictable_after_ug,
             findings,
             unexplained,
             dependences,
@@ -55,7 +55,7 @@ impl Diagnosis {
             explainable: _,
             unobservable: _,
         } = &mut self;
-        let mut sizes = vec![residual_ug, residual_after_ug, noise_floor_ug, foreseeable_ug, foreseeable_after_ug];
+        let mut sizes = vec![residual_ug, residual_after_ug, noise_floor_ug, predictable_ug, predictable_after_ug];
         for finding in findings {
             sizes.extend([&mut finding.residual_before_ug, &mut finding.residual_after_ug]);
             let Some(about) = effect::about(&finding.effect) else { continue };
@@ -108,8 +108,10 @@ pub struct Finding {
     pub residual_before_ug: f64,
     /// Held-out residual after it is added, µg.
     pub residual_after_ug: f64,
-    /// Twice the gain in log likelihood, noise estimated anew, less what its parameters are worth.
-    pub evidence: f64,
+    /// ΔBIC: twice the logarithm of the likelihood ratio with and without it, noise estimated anew, less k·ln n for its k
+    /// parameters and n cells. `evidence` is another name of it, until 1.0.
+    #[serde(flatten, serialize_with = "under_both_names")]
+    pub delta_bic: f64,
     /// Its parameters.
     pub parameters: BTreeMap<String, Estimate>,
     /// Effects that would explain the same.
@@ -187,4 +189,8 @@ pub struct Noise {
     pub turn_ug: f64,
     /// From run to run, µg: turn-on.
     pub run_ug: f64,
+}
+
+fn under_both_names<S: Serializer>(delta_bic: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    BTreeMap::from([("delta_bic", delta_bic), ("evidence", delta_bic)]).serialize(serializer)
 }

@@ -36,7 +36,7 @@ pub(super) fn exponent(about: &About, name: &str) -> i32 {
 mod tests {
     use super::*;
     use crate::campaign::Row;
-    use crate::fit::effects::{Chosen, Coefficients, deeds};
+    use crate::fit::effects::{Chosen, Coefficients, contributions};
     use firmware_core::effect::{ALL, Parameter};
     use protocol::Sample;
 
@@ -66,11 +66,12 @@ mod tests {
                 let other: Vec<f64> = about.parameters.iter().zip(&values).map(scaled).collect();
                 let course = |values: Vec<f64>, factor| {
                     let coefficients = Coefficients { values: vec![values] };
-                    deeds(&rows(factor), &[Chosen::of(about)], &coefficients, u32::MAX).expect("it can be computed")
+                    contributions(&rows(factor), &[Chosen::of(about)], &coefficients, u32::MAX)
+                        .expect("it can be computed")
                 };
                 let (here, there) = (course(values.clone(), 1.0), course(other, factor));
                 assert!(
-                    here.iter().any(|deed| deed.bias_g != 0.0 || !deed.moves_nothing()),
+                    here.iter().any(|contribution| contribution.bias_g != 0.0 || !contribution.moves_nothing()),
                     "{} does nothing",
                     about.name
                 );

@@ -81,15 +81,15 @@ function card(finding, state, model, context) {
     make(
       "dl",
       { class: "facts" },
-      make("dt", {}, "Evidence"),
+      make("dt", {}, "ΔBIC"),
       make(
         "dd",
         {},
-        `${fixed(finding.evidence, 0)} `,
+        `${fixed(finding.delta_bic, 0)} `,
         make(
           "span",
           { class: "note" },
-          "twice the gain in log likelihood, less what its parameters are worth; above 10 is strong",
+          "twice the log likelihood ratio, less ln n for each parameter; an effect needs 25",
         ),
       ),
       Object.entries(finding.parameters).map(([key, estimate]) => [
@@ -101,7 +101,7 @@ function card(finding, state, model, context) {
         : [],
       finding.separate_by ? [make("dt", {}, "To tell them apart"), make("dd", {}, finding.separate_by)] : [],
       about && !about.on_device
-        ? [make("dt", {}, "On the device"), make("dd", {}, "No instrument can foresee it: it can be known, not compensated.")]
+        ? [make("dt", {}, "On the device"), make("dd", {}, "No instrument can predict it: it can be known, not compensated.")]
         : [],
     ),
   );

@@ -1,0 +1,129 @@
+//! Effects with their coefficients.
+
+use super::sum_response::is_predicted;
+use crate::expression::Expression;
+use crate::fit::effects::{Chosen, Coefficients};
+use firmware_core::Memory;
+use firmware_core::effect::{self, About, Role};
+use protocol::limits::MAX_PARAMETERS;
+
+/// Effects with their coefficients.
+#[derive(Clone, Debug)]
+pub struct EffectSet {
+    /// The effects.
+    pub effects: Vec<Chosen>,
+    /// Their coefficients.
+    pub coefficients: Coefficients,
+}
+
+impl EffectSet {
+    /// No effects.
+    pub const NONE: Self = Self { effects: Vec::new(), coefficients: Coefficients { values: Vec::new() } };
+
+    /// These and one more.
+    pub fn with(&self, effect: &Chosen, values: &[f64]) -> Self {
+        let mut set = self.clone();
+        set.effects.push(effect.clone());
+        set.coefficients.values.push(values.to_vec());
+        set
+    }
+
+    /// These and others.
+    pub fn and(&self, others: &Self) -> Self {
+        let mut set = self.clone();
+        set.effects.extend(others.effects.iter().cloned());
+        set.coefficients.values.extend(others.coefficients.values.iter().cloned());
+        set
+    }
+
+    /// The same effects with other parameters, held within their bounds.
+    pub fn at(&self, parameters: &[f64]) -> Self {
+        let coefficients = Coefficients::from_parameters(&self.effects, parameters);
+        Self { effects: self.effects.clone(), coefficients }
+    }
+
+    /// Each by itself.
+    pub fn each(&self) -> impl Iterator<Item = Self> {
+        self.effects.iter().zip(&self.coefficients.values).map(|(effect, values)| Self::NONE.with(effect, values))
+    }
+
+    /// How far each free parameter may be from where it is, in the optimiser's units: an amplitude by all of it, a shape by
+    /// a factor of e, a place by the effect's own width.
+    pub fn reaches(&self) -> Vec<f64> {
+        let parameters = self.coefficients.to_parameters(&self.effects);
+        let free = self.effects.iter().zip(&self.coefficients.values).flat_map(|(effect, values)| {
+            let width = effect.about.parameters.iter().zip(values).find(|(about, _)| about.role == Role::Shape);
+            let width = width.map_or(1.0, |(_, width)| *width);
+            effect.free().map(move |about| (about.role, width))
+        });
+        free.zip(parameters)
+            .map(|((role, width), parameter)| match role {
+                Role::Amplitude => parameter.abs(),
+                Role::Shape => 1.0,
+                Role::Location | Role::Origin => width,
+            })
+            .collect()
+    }
+
+    /// What each of them remembers.
+    pub fn memories(&self) -> impl Iterator<Item = Memory<f64>> {
+        self.effects.iter().zip(&self.coefficients.values).map(|(chosen, values)| {
+            let mut coefficients = [0.0; MAX_PARAMETERS];
+            coefficients.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value);
+            let leaves_idle = |text: &Expression| chosen.about.parameters.iter().any(|about| text.leaves_idle(about));
+            let idle = chosen.expression.as_ref().is_some_and(leaves_idle);
+            let effect = effect::find::<f64>(chosen.about.id).filter(|_| !idle);
+            effect.map_or(Memory::None, |effect| effect.memory(&coefficients))
+        })
+    }
+
+    /// Those of which this is true, and the others.
+    pub(super) fn split(&self, is: impl Fn(&About) -> bool) -> (Self, Self) {
+        let mut both = (Self::NONE, Self::NONE);
+        for (effect, values) in self.effects.iter().zip(&self.coefficients.values) {
+            let side = if is(effect.about) { &mut both.0 } else { &mut both.1 };
+            side.effects.push(effect.clone());
+            side.coefficients.values.push(values.clone());
+        }
+        both
+    }
+
+    /// Of each free parameter, whether the effect predicts the sum of the frequencies.
+    pub fn predicts(&self) -> impl Iterator<Item = bool> {
+        self.effects.iter().flat_map(|effect| effect.free().map(|_| is_predicted(effect.about)))
+    }
+
+    /// Those whose contributions predict the sum of the frequencies.
+    pub fn sum_predicted(&self) -> Self {
+        self.split(is_predicted).0
+    }
+
+    /// Those that leave the sum free.
+    pub fn sum_free(&self) -> Self {
+        self.split(is_predicted).1
+    }
+
+    /// These but the one at `index`.
+    pub fn without(&self, index: usize) -> Self {
+        let mut set = self.clone();
+        set.effects.remove(index);
+        set.coefficients.values.remove(index);
+        set
+    }
+}
+
+/// Whether the effect sits at a place.
+pub fn is_placed(about: &About) -> bool {
+    about.parameters.iter().any(|parameter| parameter.role == Role::Location)
+}
+
+/// Indices of the amplitudes among an effect's parameters.
+pub fn amplitudes(about: &About) -> Vec<usize> {
+    let parameters = about.parameters.iter().enumerate();
+    parameters.filter(|(_, about)| about.role == Role::Amplitude).map(|(index, _)| index).collect()
+}
+
+/// What an effect is called: its name, or the formula.
+pub fn name_of(effect: &Chosen) -> &str {
+    effect.expression.as_ref().map_or(effect.about.name, Expression::text)
+}

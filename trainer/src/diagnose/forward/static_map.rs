@@ -1,0 +1,123 @@
+//! The static map as it is modelled now, in cells: what it reads wrong.
+
+use super::contributions::Contributions;
+use crate::campaign::Row;
+use crate::diagnose::cells::{Cell, Cells, Columns, RunCells};
+use crate::fit::effects::Contribution;
+use crate::model::Model;
+use crate::noise::{rms, sample_sigma_g};
+use crate::yardstick::Yardstick;
+use firmware_core::{Network, Scale};
+use nalgebra::DMatrix;
+use protocol::Weights;
+use rayon::prelude::*;
+
+/// g to µg.
+const UG: f64 = 1e6;
+/// Noise is never taken to be less, µg.
+const LEAST_UG: f64 = 1e-3;
+
+/// The static map: what a model computes without its effects.
+#[derive(Clone)]
+pub struct StaticMap {
+    model: Model,
+    network: Network<f64>,
+    scale: Scale<f64>,
+    /// What its readings are multiplied with.
+    factor: f64,
+}
+
+impl StaticMap {
+    /// The static map of `model`, its readings in the yardstick's units; its effects are not part of it.
+    pub fn new(model: &Model, yardstick: &Yardstick) -> Self {
+        let (network, scale) = (Network::new(&model.weights()), Scale::new(&model.scaling.to_wire()));
+        Self { network, scale, model: model.clone(), factor: yardstick.factor() }
+    }
+
+    /// What the static map reads at the scaled inputs, g.
+    pub fn reading_g(&self, x: f64, t: f64) -> f64 {
+        self.factor * self.scale.reading_g(x, t, self.network.evaluate(x, t))
+    }
+
+    /// Reading minus reference in each cell, µg, under these contributions.
+    pub fn residual_ug(&self, cells: &Cells, contributions: &Contributions) -> Columns {
+        let of = |(run, contributions): (&RunCells, &Vec<Contribution>)| {
+            let values = run
+                .cells
+                .iter()
+                .zip(contributions)
+                .map(|(cell, contribution)| self.cell_residual_ug(cells, cell, contribution));
+            DMatrix::from_iterator(run.cells.len(), 1, values)
+        };
+        cells.runs.par_iter().zip(contributions).map(of).collect()
+    }
+
+    /// The same under `own` contributions too, beside fixed ones that leave `before`.
+    pub fn residual_beside_ug(
+        &self,
+        cells: &Cells,
+        fixed: &Contributions,
+        before: &Columns,
+        own: &Contributions,
+    ) -> Columns {
+        let of = |(index, run): (usize, &RunCells)| {
+            let value = |(row, cell): (usize, &Cell)| {
+                let contribution = &own[index][row];
+                // What only adds to the output asks nothing of the network.
+                if contribution.moves_nothing() {
+                    return before[index][(row, 0)] - contribution.bias_g * UG;
+                }
+                self.cell_residual_ug(cells, cell, &fixed[index][row].plus(contribution))
+            };
+            DMatrix::from_iterator(run.cells.len(), 1, run.cells.iter().enumerate().map(value))
+        };
+        cells.runs.par_iter().enumerate().map(of).collect()
+    }
+
+    fn cell_residual_ug(&self, cells: &Cells, cell: &Cell, contribution: &Contribution) -> f64 {
+        let x = cell.x - contribution.delta_f_hz / cells.scale.delta_f_half_span_hz;
+        let t = cell.t + contribution.temperature_c / cells.scale.temperature_half_span_c;
+        (self.reading_g(x, t) - contribution.bias_g - cell.level_g) * UG
+    }
+
+    /// Scatter of the static reading from sample to sample, µg.
+    pub fn sample_ug(&self, cells: &Cells) -> Option<f64> {
+        let residuals = |run: &RunCells| -> Vec<f64> {
+            let of = |row: &Row| {
+                let [x, t] = cells.scale.inputs(&row.sample);
+                (self.reading_g(x, t) - row.reference_g) * UG
+            };
+            run.run.rows.iter().map(of).collect()
+        };
+        let all: Vec<Vec<f64>> = cells.runs.iter().map(residuals).collect();
+        sample_sigma_g(cells.runs.iter().map(|run| run.run).zip(&all)).map(|sigma| sigma.max(LEAST_UG))
+    }
+
+    /// RMS slope over temperature at a given frequency difference, µg/°C.
+    pub fn ug_per_c(&self, cells: &Cells) -> f64 {
+        let reading = |x: f64, t: f64| self.reading_g(x, t) * UG;
+        let slope = |cell: &Cell| (reading(cell.x, cell.t + 0.01) - reading(cell.x, cell.t - 0.01)) / 0.02;
+        let slopes: Vec<f64> = cells.iter().map(slope).collect();
+        rms(&slopes) / cells.scale.temperature_half_span_c
+    }
+
+    /// How far it goes to either side at medium temperature, g.
+    pub fn reach_g(&self) -> f64 {
+        (self.reading_g(1.0, 0.0) - self.reading_g(-1.0, 0.0)).abs() / 2.0
+    }
+
+    /// At the middle of the domain, Hz/g.
+    pub fn scale_factor_hz_per_g(&self, cells: &Cells) -> f64 {
+        cells.scale.delta_f_half_span_hz * 2.0 / (self.reading_g(1.0, 0.0) - self.reading_g(-1.0, 0.0))
+    }
+
+    /// The weights that the network has.
+    pub fn weights(&self) -> Weights {
+        self.model.weights()
+    }
+
+    /// A unit of the network's output, µg.
+    pub fn output_ug(&self) -> f64 {
+        (self.factor * f64::from(self.model.scaling.output_g)).abs() * UG
+    }
+}

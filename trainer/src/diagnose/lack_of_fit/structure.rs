@@ -1,0 +1,154 @@
+//! Courses that no known effect has, and that tell of something unknown where the residual follows one.
+
+use crate::diagnose::cells::{Cell, Cells, Columns, RunCells, width};
+use crate::diagnose::problem::Problem;
+use nalgebra::DMatrix;
+use std::collections::BTreeSet;
+
+/// A structure to look for.
+pub struct Alternative {
+    /// The quantities that it depends on.
+    pub depends_on: Vec<String>,
+    /// Its period, if it has one.
+    pub period_s: Option<f64>,
+    /// Its course in the cells, each free to be of any size.
+    pub course: Course,
+}
+
+/// Where a structure shows.
+pub enum Course {
+    /// In all runs.
+    All(Columns),
+    /// In one of them: there may be thousands, and most of a column for each would be zeros.
+    One(usize, DMatrix<f64>),
+}
+
+impl Course {
+    /// How many columns there are.
+    pub fn width(&self) -> usize {
+        match self {
+            Self::All(columns) => width(columns),
+            Self::One(_, columns) => columns.ncols(),
+        }
+    }
+
+    /// With its zeros.
+    pub fn whole(&self, cells: &Cells) -> Columns {
+        let (run, own) = match self {
+            Self::All(columns) => return columns.clone(),
+            Self::One(run, own) => (*run, own),
+        };
+        let zeros = |run: &RunCells| DMatrix::zeros(run.cells.len(), own.ncols());
+        let mut columns: Columns = cells.runs.iter().map(zeros).collect();
+        columns[run].copy_from(own);
+        columns
+    }
+}
+
+/// A run that covers less than this of the scaled temperature has no course over it.
+const LEAST_COURSE: f64 = 0.1;
+/// Levels are told apart to a thousandth of 1 g, or coarser where there would be more than so many.
+const PER_LEVEL: f64 = 1e3;
+const MOST_LEVELS: usize = 64;
+/// The solar day and the moon's half day, s.
+const DAYS_S: [f64; 2] = [86_400.0, 44_714.0];
+/// A swing by the calendar must have been followed this long in all, in periods.
+const LEAST_PERIODS: f64 = 1.5;
+
+/// Structures whose ΔBIC compares with that of effects: a kink's, weighed against a smooth instrument only, says
+/// too how far training was bent by the very effect that is missing.
+pub fn structures(problem: &Problem) -> Vec<Alternative> {
+    let mut all = days(problem);
+    all.extend(odd_runs(problem));
+    all
+}
+
+/// Swings by the calendar: of the bias, or of a rig that leans, which shows across the input axis only.
+fn days(problem: &Problem) -> Vec<Alternative> {
+    let dated = problem.cells().runs.iter().all(|run| run.run.rows.iter().all(|row| row.sample.age_s.is_some()));
+    let followed_s = |run: &RunCells| run.cells.last().map_or(0.0, |cell| cell.time_s);
+    let followed_s: f64 = problem.cells().runs.iter().map(followed_s).sum();
+    let periods = DAYS_S.into_iter().filter(|period_s| dated && followed_s > LEAST_PERIODS * period_s);
+    let periodic = |period_s: f64, leans: bool| Alternative {
+        depends_on: vec!["time_s".to_owned()],
+        period_s: Some(period_s),
+        course: Course::All(problem.cells().columns(|_, run, cell| {
+            let first = &run.run.rows[0].sample;
+            let phase = (f64::from(first.age_s.unwrap_or(0)) + cell.time_s) / period_s * std::f64::consts::TAU;
+            let size = problem.sample_ug * if leans { cell.cross_g } else { 1.0 };
+            [phase.sin() * size, phase.cos() * size]
+        })),
+    };
+    periods.flat_map(|period_s| [periodic(period_s, false), periodic(period_s, true)]).collect()
+}
+
+/// For each run, a course over temperature of its own.
+fn odd_runs(problem: &Problem) -> Vec<Alternative> {
+    let span = |run: &RunCells| {
+        let each = || run.cells.iter().map(|cell| cell.t);
+        each().fold(f64::MIN, f64::max) - each().fold(f64::MAX, f64::min)
+    };
+    let courses = problem.cells().runs.iter().enumerate().filter(|(_, run)| span(run) > LEAST_COURSE);
+    courses
+        .map(|(odd, run)| {
+            let cells = run.cells.len().max(1) as f64;
+            let middle = run.cells.iter().map(|cell| cell.t).sum::<f64>() / cells;
+            let course = run.cells.iter().map(|cell| (cell.t - middle) * problem.sample_ug);
+            Alternative {
+                depends_on: vec!["run".to_owned(), "temperature_c".to_owned()],
+                period_s: None,
+                course: Course::One(odd, DMatrix::from_iterator(run.cells.len(), 1, course)),
+            }
+        })
+        .collect()
+}
+
+/// What the hottest or coldest moment so far left behind for good.
+pub fn running_extrema(problem: &Problem) -> Vec<Alternative> {
+    let mut order: Vec<usize> = (0..problem.cells().runs.len()).collect();
+    // Runs without a date come in the order of the files.
+    order.sort_by_key(|run| problem.cells().runs[*run].run.rows.first().and_then(|row| row.sample.age_s));
+    let extremum = |sign: f64| {
+        let mut farthest = f64::NEG_INFINITY;
+        let mut columns: Columns = vec![DMatrix::zeros(0, 1); order.len()];
+        for run in &order {
+            let cells = &problem.cells().runs[*run].cells;
+            let so_far = cells.iter().map(|cell| {
+                farthest = farthest.max(sign * cell.t);
+                farthest * problem.sample_ug
+            });
+            columns[*run] = DMatrix::from_iterator(cells.len(), 1, so_far);
+        }
+        columns
+    };
+    let depends_on = || vec!["temperature_c".to_owned(), "time_s".to_owned()];
+    let alternative =
+        |sign| Alternative { depends_on: depends_on(), period_s: None, course: Course::All(extremum(sign)) };
+    [1.0, -1.0].map(alternative).into()
+}
+
+/// An asymmetry of the two directions (IEEE Std 1293: K0', K1', K_oq).
+pub fn rectified(problem: &Problem) -> Alternative {
+    let of = |_: usize, _: &RunCells, cell: &Cell| [cell.level_g.abs(), cell.level_g * cell.level_g.abs()];
+    let columns = problem.cells().columns(of).into_iter().map(|run| run * problem.sample_ug).collect();
+    Alternative { depends_on: vec!["reference_g".to_owned()], period_s: None, course: Course::All(columns) }
+}
+
+/// For each level, one wherever it was applied.
+pub fn levels(problem: &Problem) -> Columns {
+    let level = |cell: &Cell, per_level: f64| (cell.level_g * per_level).round() as i64;
+    let told_apart = |per_level: f64| -> Vec<i64> {
+        problem.cells().iter().map(|cell| level(cell, per_level)).collect::<BTreeSet<_>>().into_iter().collect()
+    };
+    let mut per_level = PER_LEVEL;
+    let mut distinct = told_apart(per_level);
+    while distinct.len() > MOST_LEVELS {
+        per_level /= 2.0;
+        distinct = told_apart(per_level);
+    }
+    let of = |run: &RunCells| {
+        let here = |row: usize, column: usize| level(&run.cells[row], per_level) == distinct[column];
+        DMatrix::from_fn(run.cells.len(), distinct.len(), |row, column| f64::from(u8::from(here(row, column))))
+    };
+    problem.cells().runs.iter().map(of).collect()
+}
