@@ -201,12 +201,16 @@ fn what_a_person_should_know_is_complete() {
         assert!(texts.iter().all(|text| text.len() > 10), "{}", about.name);
         assert!(about.parameters.len() <= MAX_PARAMETERS, "{}", about.name);
         assert!(about.channel.is_none_or(|channel| channel.len() <= MAX_NAME), "{}", about.name);
-        for Parameter { name, role, start, low, high, .. } in about.parameters {
+        for Parameter { name, role, start, low, high, typical, .. } in about.parameters {
             assert!(low < high && (*low..=*high).contains(start), "{}: {name}", about.name);
             assert!((low.abs().max(high.abs()) as f32).is_finite(), "{}: {name}", about.name);
             match role {
                 // A fit starts without the effect and may find either sign.
-                Role::Amplitude => assert!(*start == 0.0 && *low < 0.0 && *high > 0.0, "{}: {name}", about.name),
+                Role::Amplitude => {
+                    assert!(*start == 0.0 && *low < 0.0 && *high > 0.0, "{}: {name}", about.name);
+                    // Of a user's own formula nobody knows what is typical.
+                    assert!(about.takes_program() || (*typical > 0.0 && typical < high), "{}: {name}", about.name);
+                }
                 Role::Shape => assert!(*low > 0.0, "{}: {name}", about.name),
                 Role::Origin => assert!(about.channel.is_some(), "{}: {name}", about.name),
                 Role::Location => {}

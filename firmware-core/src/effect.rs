@@ -150,6 +150,8 @@ pub struct About {
     pub parameters: &'static [Parameter],
     /// The auxiliary channel that it follows, if any.
     pub channel: Option<&'static str>,
+    /// What it does to the sum of the frequencies.
+    pub sum_response: SumResponse,
     /// What a campaign must contain to show it.
     pub needs: &'static str,
 }
@@ -189,6 +191,61 @@ pub struct Parameter {
     pub low: f64,
     /// The greatest value that makes physical sense.
     pub high: f64,
+    /// What sensors of this kind have: a plan takes it where no measurement says better.
+    pub typical: f64,
+    /// At which of the bounds the formula has a limit that makes sense: a fit that ends there is none that was stopped.
+    pub sound_limit: SoundLimit,
+}
+
+/// Bounds at which a formula has a limit that makes sense: a rate not smoothed, a drift that does not end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SoundLimit {
+    /// At neither: what ends there is something else.
+    Neither,
+    /// At the lower one.
+    Low,
+    /// At the upper one.
+    High,
+    /// At both.
+    Both,
+}
+
+impl SoundLimit {
+    /// Whether the lower bound is one.
+    #[must_use]
+    pub const fn is_low(self) -> bool {
+        matches!(self, Self::Low | Self::Both)
+    }
+
+    /// Whether the upper bound is one.
+    #[must_use]
+    pub const fn is_high(self) -> bool {
+        matches!(self, Self::High | Self::Both)
+    }
+}
+
+/// What an effect does to the sum of the frequencies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SumResponse {
+    /// What it does to temperature and difference predicts it: warmer resonators, another clock.
+    Predicted,
+    /// In proportion to its bias, by at most so many times what the difference moves.
+    Free(f64),
+}
+
+impl SumResponse {
+    /// Heat between the forks moves the sum by less than the difference.
+    pub const GRADIENT: Self = Self::Free(2.0);
+    /// Drive, charge and electronics move the sum ten times as much as the difference.
+    pub const ELECTRONICS: Self = Self::Free(40.0);
+    /// Stress of the package moves the sum up to a hundred times as much as the difference.
+    pub const STRESS: Self = Self::Free(400.0);
+
+    /// Whether the effect predicts the sum.
+    #[must_use]
+    pub const fn is_predicted(self) -> bool {
+        matches!(self, Self::Predicted)
+    }
 }
 
 /// How a fit treats a coefficient.

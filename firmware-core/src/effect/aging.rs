@@ -9,7 +9,7 @@
 //! Within a campaign of few days this is a constant and not to be told from the bias; an offset that
 //! is new at every power-on looks like it until there are more runs than laws.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -20,11 +20,39 @@ pub const ABOUT: About = About {
     equation: "dB/dt = D·(1 + t/(n·τ))^−n: n = 1 gives D·τ·ln(1 + t/τ), n → ∞ D·τ·(1 − exp(−t/τ)), τ → ∞ D·t",
     source: "Peng et al., IEEE Sensors Journal 2023, 10.1109/jsen.2022.3222006; MIL-PRF-55310 (logarithm)",
     parameters: &[
-        Parameter { name: "rate_g_per_day", unit: "g/day", role: Role::Amplitude, start: 0.0, low: -0.01, high: 0.01 },
-        Parameter { name: "tau_days", unit: "day", role: Role::Shape, start: 30.0, low: 0.05, high: 1e5 },
-        Parameter { name: "order", unit: "", role: Role::Shape, start: 1.0, low: 0.5, high: 100.0 },
+        Parameter {
+            name: "rate_g_per_day",
+            unit: "g/day",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.01,
+            high: 0.01,
+            typical: 2e-6,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "tau_days",
+            unit: "day",
+            role: Role::Shape,
+            start: 30.0,
+            low: 0.05,
+            high: 1e5,
+            typical: 30.0,
+            sound_limit: SoundLimit::High,
+        },
+        Parameter {
+            name: "order",
+            unit: "",
+            role: Role::Shape,
+            start: 1.0,
+            low: 0.5,
+            high: 100.0,
+            typical: 1.0,
+            sound_limit: SoundLimit::Both,
+        },
     ],
     channel: None,
+    sum_response: SumResponse::STRESS,
     needs: "an age_days column, and runs over months at logarithmic intervals",
 };
 

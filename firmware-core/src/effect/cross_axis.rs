@@ -8,7 +8,7 @@
 //! acceleration is not in the formula: in a field of 1 g it is 1 − a², which the calibration has
 //! taken up.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -19,10 +19,29 @@ pub const ABOUT: About = About {
     equation: "ΔB = δ·a_p + K_ip·a·a_p",
     source: "IEEE Std 1293, δ and K_ip; US patent 8,117,917",
     parameters: &[
-        Parameter { name: "delta_g_per_g", unit: "g/g", role: Role::Amplitude, start: 0.0, low: -0.1, high: 0.1 },
-        Parameter { name: "kip_g_per_g2", unit: "g/g²", role: Role::Amplitude, start: 0.0, low: -0.01, high: 0.01 },
+        Parameter {
+            name: "delta_g_per_g",
+            unit: "g/g",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.1,
+            high: 0.1,
+            typical: 100e-6,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "kip_g_per_g2",
+            unit: "g/g²",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.01,
+            high: 0.01,
+            typical: 20e-6,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: Some("cross_g"),
+    sum_response: SumResponse::STRESS,
     needs: "a cross_g column, and a tumble of eight or more positions in random order, best in two mountings",
 };
 

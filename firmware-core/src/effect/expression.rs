@@ -6,7 +6,7 @@
 //!
 //! Where the expression has no value (a division by zero, the root of a negative number, an overflow) it adds nothing.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::memory::Memory;
 use crate::program::Input;
 use crate::real::Real;
@@ -19,10 +19,29 @@ pub const ABOUT: About = About {
     equation: "ΔB = A·e, with your own expression e; temperature_departure q = T − low-pass(T, τ), temperature_rate = q/τ",
     source: "you; see docs/adding-an-effect.md",
     parameters: &[
-        Parameter { name: "amplitude_g", unit: "g per unit", role: Role::Amplitude, start: 0.0, low: -1e9, high: 1e9 },
-        Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 30.0, low: 1.0, high: 36_000.0 },
+        Parameter {
+            name: "amplitude_g",
+            unit: "g per unit",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -1e9,
+            high: 1e9,
+            typical: 0.0,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "tau_s",
+            unit: "s",
+            role: Role::Shape,
+            start: 30.0,
+            low: 1.0,
+            high: 36_000.0,
+            typical: 30.0,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: None,
+    sum_response: SumResponse::STRESS,
     needs: "whatever the expression reads must vary, and not along with acceleration or temperature alone",
 };
 

@@ -6,7 +6,7 @@
 //! In a fixed order of positions every 0 g follows the same neighbour, and this looks like a
 //! `misalignment`; a random order tells them apart.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal, SoundLimit, SumResponse};
 use crate::memory::Memory;
 use crate::real::Real;
 
@@ -18,10 +18,29 @@ pub const ABOUT: About = About {
     equation: "τ·dz/dt = a − z; ΔB = K·(z − a)",
     source: "IEEE Std 1293, hysteresis; anelastic relaxation, sizes are engineering estimates",
     parameters: &[
-        Parameter { name: "bias_g_per_g", unit: "g/g", role: Role::Amplitude, start: 0.0, low: -0.01, high: 0.01 },
-        Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 200.0, low: 2.0, high: 10_000.0 },
+        Parameter {
+            name: "bias_g_per_g",
+            unit: "g/g",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.01,
+            high: 0.01,
+            typical: 20e-6,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "tau_s",
+            unit: "s",
+            role: Role::Shape,
+            start: 200.0,
+            low: 2.0,
+            high: 10_000.0,
+            typical: 200.0,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: None,
+    sum_response: SumResponse::GRADIENT,
     needs: "positions in random order, with minutes of rest after large changes",
 };
 

@@ -7,7 +7,7 @@
 //!
 //! Within a campaign of a few days it looks like `aging`, until the humidity turns back.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal, SoundLimit, SumResponse};
 use crate::memory::Memory;
 use crate::real::Real;
 
@@ -19,11 +19,39 @@ pub const ABOUT: About = About {
     equation: "τ·dh/dt = H − h; ΔB = K·(h − h0)",
     source: "JMEMS-2021-0212 on humidity; Analog Devices, EngineerZone on the ADXL343",
     parameters: &[
-        Parameter { name: "bias_g_per_pct", unit: "g/%", role: Role::Amplitude, start: 0.0, low: -0.01, high: 0.01 },
-        Parameter { name: "tau_h", unit: "h", role: Role::Shape, start: 20.0, low: 0.5, high: 1000.0 },
-        Parameter { name: "nominal_pct", unit: "%", role: Role::Origin, start: 40.0, low: 0.0, high: 100.0 },
+        Parameter {
+            name: "bias_g_per_pct",
+            unit: "g/%",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.01,
+            high: 0.01,
+            typical: 5e-6,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "tau_h",
+            unit: "h",
+            role: Role::Shape,
+            start: 20.0,
+            low: 0.5,
+            high: 1000.0,
+            typical: 20.0,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "nominal_pct",
+            unit: "%",
+            role: Role::Origin,
+            start: 40.0,
+            low: 0.0,
+            high: 100.0,
+            typical: 40.0,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: Some("humidity_pct"),
+    sum_response: SumResponse::STRESS,
     needs: "a humidity_pct column with steps of tens of per cent, each held for days",
 };
 

@@ -9,7 +9,7 @@
 //! can't throw the reading from one edge to the other. Away from the range this is a function of the
 //! frequency difference that the network learns by itself; close to it, it is too steep for that.
 
-use super::{About, Coefficients, Disturbance, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Disturbance, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -19,8 +19,18 @@ pub const ABOUT: About = About {
     summary: "Close to equal frequencies the resonators pull each other, until they run as one and the sensor is blind.",
     equation: "Δf = sgn(Δf0)·√(Δf0² − fL²), 0 within ±fL; undone by Δf0 = Δf·√(1 + fL²/(Δf² + (10 mHz)²))",
     source: "Adler, Proc. IRE 1946, 34, 351; Zhao et al., JMEMS 2019, 10.1109/JMEMS.2019.2908931",
-    parameters: &[Parameter { name: "range_hz", unit: "Hz", role: Role::Shape, start: 2.0, low: 0.01, high: 50.0 }],
+    parameters: &[Parameter {
+        name: "range_hz",
+        unit: "Hz",
+        role: Role::Shape,
+        start: 2.0,
+        low: 0.01,
+        high: 50.0,
+        typical: 2.0,
+        sound_limit: SoundLimit::Neither,
+    }],
     channel: None,
+    sum_response: SumResponse::GRADIENT,
     needs: "many levels of acceleration on both sides of equal frequencies, as in a tumble of 24 positions",
 };
 

@@ -10,7 +10,7 @@
 //! `cross-axis`, nor in one mounting from an error of the turntable's zero: turn the sensor by 180°
 //! about its input axis.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -21,7 +21,16 @@ pub const ABOUT: About = About {
     equation: "ΔB = (ψ + ψ_T·(T − 25 °C))·a_p",
     source: "IEEE Std 1293, misalignment δ and its temperature sensitivity",
     parameters: &[
-        Parameter { name: "angle_rad", unit: "rad", role: Role::Amplitude, start: 0.0, low: -0.1, high: 0.1 },
+        Parameter {
+            name: "angle_rad",
+            unit: "rad",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.1,
+            high: 0.1,
+            typical: 100e-6,
+            sound_limit: SoundLimit::Neither,
+        },
         Parameter {
             name: "angle_rad_per_c",
             unit: "rad/°C",
@@ -29,9 +38,12 @@ pub const ABOUT: About = About {
             start: 0.0,
             low: -0.001,
             high: 0.001,
+            typical: 1e-6,
+            sound_limit: SoundLimit::Neither,
         },
     ],
     channel: Some("cross_g"),
+    sum_response: SumResponse::STRESS,
     needs: "a cross_g column, and a tumble in two mountings turned by 180° about the input axis",
 };
 

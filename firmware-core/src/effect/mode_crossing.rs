@@ -8,7 +8,7 @@
 //!
 //! With nodes some 20 °C apart it looks like any bend of the thermometer's scale; a slow ramp shows it.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -19,12 +19,49 @@ pub const ABOUT: About = About {
     equation: "ΔB = A·2xw/(x² + w²), x = T − Tx − s·a",
     source: "coupled-mode theory; activity dips of quartz resonators",
     parameters: &[
-        Parameter { name: "amplitude_g", unit: "g", role: Role::Amplitude, start: 0.0, low: -0.1, high: 0.1 },
-        Parameter { name: "width_c", unit: "°C", role: Role::Shape, start: 2.0, low: 0.1, high: 20.0 },
-        Parameter { name: "crossing_c", unit: "°C", role: Role::Location, start: 25.0, low: -60.0, high: 130.0 },
-        Parameter { name: "shift_c_per_g", unit: "°C/g", role: Role::Location, start: 0.0, low: -150.0, high: 150.0 },
+        Parameter {
+            name: "amplitude_g",
+            unit: "g",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.1,
+            high: 0.1,
+            typical: 300e-6,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "width_c",
+            unit: "°C",
+            role: Role::Shape,
+            start: 2.0,
+            low: 0.1,
+            high: 20.0,
+            typical: 2.0,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "crossing_c",
+            unit: "°C",
+            role: Role::Location,
+            start: 25.0,
+            low: -60.0,
+            high: 130.0,
+            typical: 25.0,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "shift_c_per_g",
+            unit: "°C/g",
+            role: Role::Location,
+            start: 0.0,
+            low: -150.0,
+            high: 150.0,
+            typical: 0.0,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: None,
+    sum_response: SumResponse::STRESS,
     needs: "slow temperature ramps with dense temperatures, repeated at two levels of acceleration",
 };
 

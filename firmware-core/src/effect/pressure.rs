@@ -3,7 +3,7 @@
 //! Lid and die bend together, and what the pair does not cancel of that stress is a bias in proportion.
 //! It follows the weather (±20 hPa) and the altitude.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -21,10 +21,22 @@ pub const ABOUT: About = About {
             start: 0.0,
             low: -0.001,
             high: 0.001,
+            typical: 0.3e-6,
+            sound_limit: SoundLimit::Neither,
         },
-        Parameter { name: "nominal_pa", unit: "Pa", role: Role::Origin, start: 101_325.0, low: 0.0, high: 1e7 },
+        Parameter {
+            name: "nominal_pa",
+            unit: "Pa",
+            role: Role::Origin,
+            start: 101_325.0,
+            low: 0.0,
+            high: 1e7,
+            typical: 101_325.0,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: Some("pressure_pa"),
+    sum_response: SumResponse::STRESS,
     needs: "a pressure_pa column that varies by some tens of hPa, as in a bell jar",
 };
 

@@ -8,7 +8,7 @@
 //! `scale-factor-aging` differs from it by that 1 µg per ppm only. The sum of the frequencies, off by 82 mHz
 //! per ppm, tells them apart at once.
 
-use super::{About, Coefficients, Disturbance, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Disturbance, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -25,8 +25,11 @@ pub const ABOUT: About = About {
         start: 0.0,
         low: -100.0,
         high: 100.0,
+        typical: 3e-3,
+        sound_limit: SoundLimit::Neither,
     }],
     channel: None,
+    sum_response: SumResponse::Predicted,
     needs: "an age_days column, runs over months at more than one level of acceleration, and the sum of the frequencies",
 };
 

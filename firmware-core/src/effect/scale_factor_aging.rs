@@ -6,7 +6,7 @@
 //! A counter's clock that ages does the same within 1 µg per ppm (`reference-clock`); the sum of the
 //! frequencies tells them apart.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -23,8 +23,11 @@ pub const ABOUT: About = About {
         start: 0.0,
         low: -1000.0,
         high: 1000.0,
+        typical: 1.0,
+        sound_limit: SoundLimit::Neither,
     }],
     channel: None,
+    sum_response: SumResponse::STRESS,
     needs: "an age_days column, and runs over months at more than one level of acceleration",
 };
 

@@ -3,7 +3,7 @@
 //! What is left of their even nonlinearities after subtraction grows with the square of the
 //! acceleration: the coefficient K2 of IEEE 1293.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -20,8 +20,11 @@ pub const ABOUT: About = About {
         start: 0.0,
         low: -0.01,
         high: 0.01,
+        typical: 10e-6,
+        sound_limit: SoundLimit::Neither,
     }],
     channel: None,
+    sum_response: SumResponse::STRESS,
     needs: "five or more levels of acceleration, as in a tumble",
 };
 

@@ -8,7 +8,7 @@
 //! `warm-up` of the electronics has the same course. It is alike at every temperature; this follows the
 //! local slope of the bias over temperature, and moves the sum of the frequencies.
 
-use super::{About, Coefficients, Disturbance, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Disturbance, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -19,10 +19,29 @@ pub const ABOUT: About = About {
     equation: "Tr = T − ΔT·exp(−t_on/τ); the map is evaluated at Tr",
     source: "Huang et al., Micromachines 2022, 13, 1054, Table 1; IEEE Std 528, warm-up time",
     parameters: &[
-        Parameter { name: "rise_c", unit: "°C", role: Role::Amplitude, start: 0.0, low: -20.0, high: 20.0 },
-        Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 900.0, low: 5.0, high: 36_000.0 },
+        Parameter {
+            name: "rise_c",
+            unit: "°C",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -20.0,
+            high: 20.0,
+            typical: 0.15,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "tau_s",
+            unit: "s",
+            role: Role::Shape,
+            start: 900.0,
+            low: 5.0,
+            high: 36_000.0,
+            typical: 900.0,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: None,
+    sum_response: SumResponse::Predicted,
     needs: "recordings that begin at power-on from cold, at temperatures where the bias has different slopes",
 };
 

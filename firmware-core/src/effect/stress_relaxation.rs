@@ -8,7 +8,7 @@
 //! crosses a package in seconds, glue creeps for hours. Creep that is faster when hot (Arrhenius) is
 //! not in the formula.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::memory::Memory;
 use crate::real::Real;
 
@@ -20,10 +20,29 @@ pub const ABOUT: About = About {
     equation: "dq/dt = dT/dt − q/τ; ΔB = b·q",
     source: "Moreira et al., INERTIAL 2020; Materials 2017, 10, 1077",
     parameters: &[
-        Parameter { name: "bias_g_per_c", unit: "g/°C", role: Role::Amplitude, start: 0.0, low: -0.01, high: 0.01 },
-        Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 6000.0, low: 300.0, high: 1e6 },
+        Parameter {
+            name: "bias_g_per_c",
+            unit: "g/°C",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.01,
+            high: 0.01,
+            typical: 5e-6,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "tau_s",
+            unit: "s",
+            role: Role::Shape,
+            start: 6000.0,
+            low: 300.0,
+            high: 1e6,
+            typical: 6000.0,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: None,
+    sum_response: SumResponse::STRESS,
     needs: "hours of soak after large temperature steps, best at two temperatures",
 };
 

@@ -3,7 +3,7 @@
 //! Drive amplitude and electrostatic spring move with the rail; what the pair does not cancel is a
 //! bias in proportion.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -14,10 +14,29 @@ pub const ABOUT: About = About {
     equation: "ΔB = K·(V − V0)",
     source: "Comi et al., JMEMS 2010",
     parameters: &[
-        Parameter { name: "bias_g_per_v", unit: "g/V", role: Role::Amplitude, start: 0.0, low: -0.1, high: 0.1 },
-        Parameter { name: "nominal_v", unit: "V", role: Role::Origin, start: 5.0, low: 0.0, high: 50.0 },
+        Parameter {
+            name: "bias_g_per_v",
+            unit: "g/V",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.1,
+            high: 0.1,
+            typical: 1e-3,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "nominal_v",
+            unit: "V",
+            role: Role::Origin,
+            start: 5.0,
+            low: 0.0,
+            high: 50.0,
+            typical: 5.0,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: Some("supply_v"),
+    sum_response: SumResponse::ELECTRONICS,
     needs: "a supply_v column that varies by a few per cent",
 };
 

@@ -4,7 +4,7 @@
 //! times worse than one millikelvin on both. The difference follows the temperature's rate, so the
 //! bias does too, alike at every temperature; the mean frequency does not notice.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::memory::Memory;
 use crate::real::Real;
 
@@ -23,10 +23,22 @@ pub const ABOUT: About = About {
             start: 0.0,
             low: -0.1,
             high: 0.1,
+            typical: 6e-3,
+            sound_limit: SoundLimit::Neither,
         },
-        Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 5.0, low: 0.5, high: 300.0 },
+        Parameter {
+            name: "tau_s",
+            unit: "s",
+            role: Role::Shape,
+            start: 5.0,
+            low: 0.5,
+            high: 300.0,
+            typical: 5.0,
+            sound_limit: SoundLimit::Low,
+        },
     ],
     channel: None,
+    sum_response: SumResponse::GRADIENT,
     needs: "temperature ramps at two rates, where the bias has different slopes over temperature",
 };
 

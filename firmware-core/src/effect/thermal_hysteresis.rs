@@ -4,7 +4,7 @@
 //! up and down differ even after a long soak, the width does not depend on the rate, and a larger
 //! excursion wipes out the memory of smaller ones.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::memory::Memory;
 use crate::real::Real;
 
@@ -16,10 +16,29 @@ pub const ABOUT: About = About {
     equation: "ΔB = w·(z − T), z the play operator of T with half width r",
     source: "Prandtl–Ishlinskii model; ADXL354/355 data sheet on repeatability",
     parameters: &[
-        Parameter { name: "bias_g_per_c", unit: "g/°C", role: Role::Amplitude, start: 0.0, low: -0.01, high: 0.01 },
-        Parameter { name: "half_width_c", unit: "°C", role: Role::Shape, start: 10.0, low: 0.2, high: 60.0 },
+        Parameter {
+            name: "bias_g_per_c",
+            unit: "g/°C",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.01,
+            high: 0.01,
+            typical: 10e-6,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "half_width_c",
+            unit: "°C",
+            role: Role::Shape,
+            start: 10.0,
+            low: 0.2,
+            high: 60.0,
+            typical: 10.0,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: None,
+    sum_response: SumResponse::STRESS,
     needs: "the same temperatures reached from below and from above, each soaked",
 };
 

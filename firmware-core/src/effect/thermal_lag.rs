@@ -4,7 +4,7 @@
 //! wrong temperature. The residual opens into a loop whose width grows with the ramp rate and with
 //! the local slope of the bias over temperature; it closes when the rate is zero.
 
-use super::{About, Coefficients, Disturbance, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Disturbance, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::memory::Memory;
 use crate::real::Real;
 
@@ -15,8 +15,18 @@ pub const ABOUT: About = About {
     summary: "The resonators follow the thermometer late, so during a temperature change the map is entered with the wrong temperature.",
     equation: "τ·dTr/dt = T − Tr; the map is evaluated at Tr",
     source: "Guo et al., Micromachines 2023, 14, 161",
-    parameters: &[Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 35.0, low: 0.5, high: 3600.0 }],
+    parameters: &[Parameter {
+        name: "tau_s",
+        unit: "s",
+        role: Role::Shape,
+        start: 35.0,
+        low: 0.5,
+        high: 3600.0,
+        typical: 35.0,
+        sound_limit: SoundLimit::Neither,
+    }],
     channel: None,
+    sum_response: SumResponse::Predicted,
     needs: "temperature ramps, best at two rates and in both directions",
 };
 

@@ -7,7 +7,7 @@
 //! acceleration alone is also what the network learns: the term earns its place where the network was
 //! not trained, at the far ends.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -24,8 +24,11 @@ pub const ABOUT: About = About {
         start: 0.0,
         low: -0.01,
         high: 0.01,
+        typical: 0.5e-6,
+        sound_limit: SoundLimit::Neither,
     }],
     channel: None,
+    sum_response: SumResponse::STRESS,
     needs: "five or more levels of acceleration, as in a tumble, best beyond 1 g",
 };
 

@@ -9,7 +9,7 @@
 //! are scatter, and their standard deviation is the figure. In use, the one remedy is to read the
 //! sensor at a known level after every start and to subtract what it shows.
 
-use super::About;
+use super::{About, SumResponse};
 
 /// Number, names, formula, source.
 pub const ABOUT: About = About {
@@ -20,6 +20,7 @@ pub const ABOUT: About = About {
     source: "IEEE Std 1293, bias repeatability; Safran MS1000 data sheet",
     parameters: &[],
     channel: None,
+    sum_response: SumResponse::STRESS,
     needs: "ten or more power-ons at one temperature in one mounting",
 };
 

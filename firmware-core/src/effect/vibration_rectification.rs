@@ -3,7 +3,7 @@
 //! The sensor's even nonlinearities, its suspension and the counter's gates turn an oscillation about
 //! zero into a bias that follows its mean square: K_VR of IEEE 1293.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, Signal, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -20,8 +20,11 @@ pub const ABOUT: About = About {
         start: 0.0,
         low: -0.1,
         high: 0.1,
+        typical: 20e-6,
+        sound_limit: SoundLimit::Neither,
     }],
     channel: Some("vibration_g2"),
+    sum_response: SumResponse::STRESS,
     needs: "a vibration_g2 column (mean square) and vibration of several strengths",
 };
 

@@ -3,7 +3,7 @@
 //! Amplitude control, voltage references and dielectrics take minutes to reach their working point.
 //! The bias decays with the time since power-on, alike at every temperature and on every start.
 
-use super::{About, Coefficients, Effect, Moment, Parameter, Role};
+use super::{About, Coefficients, Effect, Moment, Parameter, Role, SoundLimit, SumResponse};
 use crate::real::Real;
 
 /// Number, names, formula, source.
@@ -14,10 +14,29 @@ pub const ABOUT: About = About {
     equation: "ΔB = A·exp(−t_on/τ)",
     source: "Huang et al., Micromachines 2022, 13, 1054, Table 1; Tocchio et al. on start-up",
     parameters: &[
-        Parameter { name: "amplitude_g", unit: "g", role: Role::Amplitude, start: 0.0, low: -0.1, high: 0.1 },
-        Parameter { name: "tau_s", unit: "s", role: Role::Shape, start: 600.0, low: 5.0, high: 36_000.0 },
+        Parameter {
+            name: "amplitude_g",
+            unit: "g",
+            role: Role::Amplitude,
+            start: 0.0,
+            low: -0.1,
+            high: 0.1,
+            typical: 140e-6,
+            sound_limit: SoundLimit::Neither,
+        },
+        Parameter {
+            name: "tau_s",
+            unit: "s",
+            role: Role::Shape,
+            start: 600.0,
+            low: 5.0,
+            high: 36_000.0,
+            typical: 600.0,
+            sound_limit: SoundLimit::Neither,
+        },
     ],
     channel: None,
+    sum_response: SumResponse::ELECTRONICS,
     needs: "recordings that begin at power-on",
 };
 

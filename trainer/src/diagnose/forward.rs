@@ -6,7 +6,6 @@ mod jacobian;
 mod residuals;
 mod static_map;
 mod sum_channel;
-mod sum_response;
 
 pub(super) mod basis;
 pub(super) use effect_set::{EffectSet, amplitudes, is_placed, name_of};
@@ -14,9 +13,10 @@ pub(super) use jacobian::Jacobian;
 pub(super) use residuals::{CellResiduals, FixedEffects};
 pub(super) use static_map::StaticMap;
 pub(super) use sum_channel::SumChannel;
-pub(super) use sum_response::{SumResponse, is_predicted, response};
 
 use super::cells::{Cells, Columns, difference};
+use contributions::contributions;
+use residuals::residuals_beside;
 
 /// The measurements in cells, and what is taken for their cause.
 #[derive(Clone)]
@@ -45,6 +45,31 @@ impl<'a> Forward<'a> {
     /// The map alone: no effects, to be fixed.
     pub fn no_effects(&self) -> &FixedEffects {
         &self.none
+    }
+
+    /// These effects, to be fixed.
+    pub fn fixed(&self, set: &EffectSet) -> FixedEffects {
+        FixedEffects::new(&self.cells, &self.map, self.sum.as_ref(), set)
+    }
+
+    /// What these effects leave.
+    pub fn residuals(&self, set: &EffectSet) -> CellResiduals {
+        self.residuals_beside(&self.none, set)
+    }
+
+    /// What these effects leave together with those that are fixed.
+    pub fn residuals_beside(&self, fixed: &FixedEffects, set: &EffectSet) -> CellResiduals {
+        residuals_beside(&self.cells, &self.map, self.sum.as_ref(), fixed, set)
+    }
+
+    /// What these effects leave in every cell of `cells`, which may be others than these, µg.
+    pub fn residual_in_ug(&self, cells: &Cells, set: &EffectSet) -> Columns {
+        self.map.residual_ug(cells, &contributions(cells, set))
+    }
+
+    /// Derivatives of what these effects leave beside fixed ones, by their free parameters, from where they leave `base`.
+    pub fn jacobian(&self, fixed: &FixedEffects, set: &EffectSet, base: &CellResiduals) -> Jacobian {
+        Jacobian::of(set, base, |moved| self.residuals_beside(fixed, moved))
     }
 
     /// What effects by themselves add to the residual once compensated, µg.

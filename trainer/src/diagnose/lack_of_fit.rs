@@ -30,20 +30,8 @@ use nalgebra::DMatrix;
 use periodogram::periodic;
 use rayon::prelude::*;
 use std::borrow::Cow;
+pub(super) use structure::LackOfFit;
 use structure::{Alternative, Course, levels, rectified, running_extrema, structures};
-
-/// What gives away that something is missing.
-#[derive(Clone, Debug)]
-pub(super) struct LackOfFit {
-    /// The quantities that it depends on.
-    pub depends_on: Vec<String>,
-    /// Its period, if it has one.
-    pub period_s: Option<f64>,
-    /// Twice the gain in log likelihood, less what its amplitudes are worth.
-    pub delta_bic: f64,
-    /// Size of what the instrument can't absorb of it, in all samples, µg RMS.
-    pub size_ug: f64,
-}
 
 /// Evidence that a structure must have; there are a hundred to choose from.
 const ENOUGH: f64 = 30.0;

@@ -1,6 +1,7 @@
 //! The selection driver: from noise and candidates through one finding after the other to the verdict.
 
 mod findings;
+mod found;
 mod rest;
 
 use super::answer::{Diagnosis, Verdict};
@@ -12,13 +13,14 @@ use super::problem::{
     GlsPair, NoiseModels, Problem, constrained, estimate, fit, fixed, free, in_model, initial_states, problem, refine,
 };
 use super::selection::{
-    Candidate, Contender, Found, LOWERED, Screening, held_out, missing, most_predictive, unobservable, with_channels,
+    Candidate, Found, LOWERED, Screening, held_out, missing, most_predictive, unobservable, with_channels,
 };
 use crate::campaign::Campaign;
 use crate::model::Model;
 use crate::progress::Progress;
 use crate::yardstick::Yardstick;
 use findings::findings;
+use found::Findings;
 use rest::{explainable, is_structured, unexplained_rest};
 
 /// ΔBIC that an effect must have to be named.
@@ -71,24 +73,6 @@ fn first_noises(problem: &Problem, set: &EffectSet) -> NoiseModels {
 fn fitted(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -> Option<EffectSet> {
     let gls = GlsPair::new(problem, &problem.forward.residuals(set), &fixed(problem, set), noises)?;
     Some(fit(problem, problem.forward.no_effects(), set, &gls, LAST_STEPS).0)
-}
-
-/// What was found, one after the other.
-struct Findings {
-    known: EffectSet,
-    steps: Vec<Found>,
-    /// The noise with all of them.
-    noises: NoiseModels,
-    /// Largest ΔBIC of what would have to leave its physical bounds, at the end.
-    at_bound: f64,
-    /// A channel's course that explains what no effect does.
-    formula: Option<Contender>,
-}
-
-impl Findings {
-    fn nothing_yet(known: EffectSet, noises: NoiseModels) -> Self {
-        Self { known, steps: Vec::new(), noises, at_bound: f64::NEG_INFINITY, formula: None }
-    }
 }
 
 /// What stays the same while findings are looked for.

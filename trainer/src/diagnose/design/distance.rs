@@ -1,9 +1,10 @@
 //! How far one hypothesis' course is from the best that another could make of it.
 
 use crate::diagnose::cells::{Columns, difference, joined, stacked, width};
-use crate::diagnose::forward::{EffectSet, Jacobian, SumResponse, response};
+use crate::diagnose::forward::{EffectSet, Jacobian};
 use crate::diagnose::problem::{GlsPair, Problem};
 use crate::diagnose::selection::Candidate;
+use firmware_core::effect::SumResponse;
 use nalgebra::{Cholesky, DMatrix};
 use std::borrow::Cow;
 
@@ -50,7 +51,7 @@ impl Predicted {
             let sum = course.sum.as_ref().map(|_| sum.unwrap_or_else(silent));
             Pair { delta, sum }
         });
-        let free = match response(effect.about) {
+        let free = match effect.about.sum_response {
             SumResponse::Free(most) if course.sum.is_some() => {
                 let mhz_per_ug = forward.scale_factor_hz_per_g() * 1e-3;
                 let scaled = |factor: f64| course.delta.iter().map(|run| run * factor).collect();

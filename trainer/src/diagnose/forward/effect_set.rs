@@ -1,6 +1,5 @@
 //! Effects with their coefficients.
 
-use super::sum_response::is_predicted;
 use crate::expression::Expression;
 use crate::fit::effects::{Chosen, Coefficients};
 use firmware_core::Memory;
@@ -90,17 +89,17 @@ impl EffectSet {
 
     /// Of each free parameter, whether the effect predicts the sum of the frequencies.
     pub fn predicts(&self) -> impl Iterator<Item = bool> {
-        self.effects.iter().flat_map(|effect| effect.free().map(|_| is_predicted(effect.about)))
+        self.effects.iter().flat_map(|effect| effect.free().map(|_| effect.about.sum_response.is_predicted()))
     }
 
     /// Those whose contributions predict the sum of the frequencies.
     pub fn sum_predicted(&self) -> Self {
-        self.split(is_predicted).0
+        self.split(|about| about.sum_response.is_predicted()).0
     }
 
     /// Those that leave the sum free.
     pub fn sum_free(&self) -> Self {
-        self.split(is_predicted).1
+        self.split(|about| about.sum_response.is_predicted()).1
     }
 
     /// These but the one at `index`.

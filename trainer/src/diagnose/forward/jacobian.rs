@@ -1,8 +1,7 @@
 //! How what effects leave changes with their parameters.
 
-use super::Forward;
 use super::effect_set::EffectSet;
-use super::residuals::{CellResiduals, FixedEffects};
+use super::residuals::CellResiduals;
 use crate::diagnose::cells::{Columns, difference, joined};
 
 /// Derivatives by the free parameters: one column a parameter, per unit of the optimiser's parameter.
@@ -16,23 +15,23 @@ pub struct Jacobian {
 /// Step of numeric derivatives: of logarithms and °C as it is, of amplitudes times their size.
 const STEP: f64 = 1e-4;
 
-impl Forward<'_> {
-    /// What a step of each free parameter adds to difference and sum, from where these effects leave `base`; by numeric
-    /// differentiation.
-    pub fn jacobian(&self, fixed: &FixedEffects, set: &EffectSet, base: &CellResiduals) -> Jacobian {
+impl Jacobian {
+    /// What a step of each free parameter of `set` adds to difference and sum, from where it leaves `base`; by numeric
+    /// differentiation of what effects leave, `residuals`.
+    pub fn of(set: &EffectSet, base: &CellResiduals, residuals: impl Fn(&EffectSet) -> CellResiduals) -> Self {
         let parameters = set.coefficients.to_parameters(&set.effects);
         let (mut delta, mut sum) = (Vec::new(), Vec::new());
         for index in 0..parameters.len() {
             let mut stepped = parameters.clone();
             let step = STEP * parameters[index].abs().clamp(1e-4, 1.0);
             stepped[index] += step;
-            let moved = self.residuals_beside(fixed, &set.at(&stepped));
+            let moved = residuals(&set.at(&stepped));
             delta.push(slope(&moved.delta, &base.delta, step));
             if let (Some(moved), Some(base)) = (&moved.sum, &base.sum) {
                 sum.push(slope(moved, base, step));
             }
         }
-        Jacobian { delta: joined(&delta), sum: (!sum.is_empty()).then(|| joined(&sum)) }
+        Self { delta: joined(&delta), sum: (!sum.is_empty()).then(|| joined(&sum)) }
     }
 }
 

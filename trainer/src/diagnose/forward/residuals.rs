@@ -1,6 +1,5 @@
 //! What effects leave of the residual and of the sum of the frequencies.
 
-use super::Forward;
 use super::contributions::{Contributions, contributions};
 use super::effect_set::EffectSet;
 use super::static_map::StaticMap;
@@ -36,35 +35,24 @@ impl FixedEffects {
     }
 }
 
-impl Forward<'_> {
-    /// These effects, to be fixed.
-    pub fn fixed(&self, set: &EffectSet) -> FixedEffects {
-        FixedEffects::new(&self.cells, &self.map, self.sum.as_ref(), set)
-    }
-
-    /// What these effects leave.
-    pub fn residuals(&self, set: &EffectSet) -> CellResiduals {
-        self.residuals_beside(self.no_effects(), set)
-    }
-
-    /// What these effects leave together with those that are fixed.
-    pub fn residuals_beside(&self, fixed: &FixedEffects, set: &EffectSet) -> CellResiduals {
-        let own = contributions(&self.cells, set);
-        let delta = self.map.residual_beside_ug(&self.cells, &fixed.contributions, &fixed.residuals.delta, &own);
-        let predicted = set.sum_predicted();
-        let sum = match &self.sum {
-            Some(channel) if !predicted.effects.is_empty() => {
-                let all_predicted = predicted.effects.len() == set.effects.len();
-                let own = if all_predicted { own } else { contributions(&self.cells, &predicted) };
-                Some(channel.residual_under(&self.cells, &[&fixed.predicted, &own]))
-            }
-            _ => fixed.residuals.sum.clone(),
-        };
-        CellResiduals { delta, sum }
-    }
-
-    /// Residual in every cell of `cells`, which may be others than these, µg.
-    pub fn residual_in_ug(&self, cells: &Cells, set: &EffectSet) -> Columns {
-        self.map.residual_ug(cells, &contributions(cells, set))
-    }
+/// What these effects leave together with those that are fixed.
+pub fn residuals_beside(
+    cells: &Cells,
+    map: &StaticMap,
+    sum: Option<&SumChannel>,
+    fixed: &FixedEffects,
+    set: &EffectSet,
+) -> CellResiduals {
+    let own = contributions(cells, set);
+    let delta = map.residual_beside_ug(cells, &fixed.contributions, &fixed.residuals.delta, &own);
+    let predicted = set.sum_predicted();
+    let sum = match sum {
+        Some(channel) if !predicted.effects.is_empty() => {
+            let all_predicted = predicted.effects.len() == set.effects.len();
+            let own = if all_predicted { own } else { contributions(cells, &predicted) };
+            Some(channel.residual_under(cells, &[&fixed.predicted, &own]))
+        }
+        _ => fixed.residuals.sum.clone(),
+    };
+    CellResiduals { delta, sum }
 }

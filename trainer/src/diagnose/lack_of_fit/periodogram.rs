@@ -4,7 +4,7 @@
 //! drift within one: runs are cut into segments of [`PERIODS`], whose powers are added. Within an octave, samples are
 //! gathered in bins of an eighth of its shortest period, so that a long record costs no more than a short one.
 
-use super::LackOfFit;
+use super::structure::LackOfFit;
 use crate::diagnose::cells::{Cell, Columns, RunCells};
 use crate::diagnose::forward::EffectSet;
 use crate::diagnose::noise::{Component, InitialStates, NoiseModel, Whitening};

@@ -5,6 +5,19 @@ use crate::diagnose::problem::Problem;
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
 
+/// What gives away that something is missing.
+#[derive(Clone, Debug)]
+pub struct LackOfFit {
+    /// The quantities that it depends on.
+    pub depends_on: Vec<String>,
+    /// Its period, if it has one.
+    pub period_s: Option<f64>,
+    /// Twice the gain in log likelihood, less what its amplitudes are worth.
+    pub delta_bic: f64,
+    /// Size of what the instrument can't absorb of it, in all samples, µg RMS.
+    pub size_ug: f64,
+}
+
 /// A structure to look for.
 pub struct Alternative {
     /// The quantities that it depends on.

@@ -2,7 +2,7 @@
 
 use super::shapes::{MOST_SHIFTS, PLACE_STEP, SHIFTS, shapes, unit, width_c};
 use crate::diagnose::cells::{Columns, difference, joined};
-use crate::diagnose::forward::{CellResiduals, EffectSet, amplitudes, is_predicted};
+use crate::diagnose::forward::{CellResiduals, EffectSet, amplitudes};
 use crate::diagnose::problem::Problem;
 use crate::fit::effects::Chosen;
 use nalgebra::DMatrix;
@@ -104,7 +104,7 @@ impl Candidate {
 
     /// Whether the sum of the frequencies is measured and the effect says what it does to it.
     pub fn predicts_sum(&self, problem: &Problem) -> bool {
-        problem.forward.sum.is_some() && is_predicted(self.effect.about)
+        problem.forward.sum.is_some() && self.effect.about.sum_response.is_predicted()
     }
 
     /// What its columns take.

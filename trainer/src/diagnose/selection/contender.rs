@@ -21,21 +21,6 @@ pub struct Contender {
 
 /// A shape this close to its bound, as a ratio, was stopped by it.
 const AT_BOUND: f64 = 1.05;
-/// Effects whose formula has a limit at a bound that makes sense: a rate not smoothed, a drift that does not end or that
-/// slows down as diffusion does.
-const GOOD_LIMITS: [(&str, &str, Side); 4] = [
-    ("thermal-gradient", "tau_s", Side::Low),
-    ("aging", "tau_days", Side::High),
-    ("aging", "order", Side::High),
-    ("aging", "order", Side::Low),
-];
-
-#[derive(Clone, Copy, PartialEq)]
-enum Side {
-    Low,
-    High,
-}
-
 impl Contender {
     /// Whether both are the same effect.
     pub fn is_same_effect(&self, other: &Self) -> bool {
@@ -52,12 +37,11 @@ impl Contender {
     /// Whether a shape was stopped by the bound of what makes physical sense, or sits where nothing was measured:
     /// then it is something else.
     pub fn is_at_bound(&self, range_c: &RangeInclusive<f64>) -> bool {
-        let about = self.effect.about;
-        let bad = |name: &str, side: Side| !GOOD_LIMITS.contains(&(about.name, name, side));
-        about.parameters.iter().zip(&self.values).any(|(parameter, value)| match parameter.role {
+        let mut parameters = self.effect.about.parameters.iter().zip(&self.values);
+        parameters.any(|(parameter, value)| match parameter.role {
             Role::Shape => {
-                (*value < parameter.low * AT_BOUND && bad(parameter.name, Side::Low))
-                    || (*value * AT_BOUND > parameter.high && bad(parameter.name, Side::High))
+                (*value < parameter.low * AT_BOUND && !parameter.sound_limit.is_low())
+                    || (*value * AT_BOUND > parameter.high && !parameter.sound_limit.is_high())
             }
             Role::Location if parameter.unit == "°C" => {
                 let reach_c = self.reach_c_per_g();

@@ -5,10 +5,11 @@ use super::contender::{Contender, Found, best_of_each};
 use super::predictive::is_predictive;
 use super::screening::{screen, shifted};
 use crate::diagnose::cells::difference;
-use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects, SumResponse, is_predicted, response};
+use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects};
 use crate::diagnose::problem::{
     GlsPair, NoiseModels, Nuisance, Problem, constrained, fit, initial_states, refine, sum_noise, widened,
 };
+use firmware_core::effect::SumResponse;
 use rayon::prelude::*;
 
 /// So many effects go from the screening into the final, as judged by the noise as estimated and by a small one.
@@ -81,7 +82,7 @@ impl<'a> Scene<'a> {
 
     /// Fits an effect's parameters and the noise in turn, and says how likely that makes what was measured.
     fn contend(&self, contender: Contender) -> Option<Contender> {
-        let predicted = is_predicted(contender.effect.about);
+        let predicted = contender.effect.about.sum_response.is_predicted();
         let initial = |own: &EffectSet| initial_states(self.problem, &self.known.and(own));
         let mut own = contender.alone();
         let mut noises = self.noises.beside(&initial(&own));
@@ -125,7 +126,7 @@ impl<'a> Scene<'a> {
         own: &EffectSet,
         noises: &NoiseModels,
     ) -> Option<(CellResiduals, NoiseModels)> {
-        let SumResponse::Free(most) = response(own.effects.first()?.about) else { return None };
+        let SumResponse::Free(most) = own.effects.first()?.about.sum_response else { return None };
         let sum = residuals.sum.as_ref()?;
         let bias = difference(&residuals.delta, &self.residuals.delta);
         let bound = most * self.problem.forward.mhz_per_ug();

@@ -1,6 +1,6 @@
 //! The findings as they are told: residuals before and after each, parameters with their uncertainties, and rivals.
 
-use super::Findings;
+use super::found::Findings;
 use crate::diagnose::answer::{Estimate, Finding};
 use crate::diagnose::design::separate;
 use crate::diagnose::forward::EffectSet;

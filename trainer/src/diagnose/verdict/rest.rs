@@ -1,6 +1,6 @@
 //! What is left that nothing explains.
 
-use super::Findings;
+use super::found::Findings;
 use crate::campaign::Campaign;
 use crate::diagnose::answer::{Dependence, Unexplained};
 use crate::diagnose::forward::name_of;
