@@ -15,6 +15,9 @@
 //! done erase can never be taken for another one.
 
 mod record;
+mod slot;
+
+pub use slot::Slot;
 
 use crate::storage::record::{HEADING, Heading, Mark, Record, State};
 use embedded_storage::nor_flash::NorFlash;
@@ -34,33 +37,6 @@ const _: () = assert!(MAX_STORED <= HEADING_AT as usize && (HEADING_AT as usize)
 
 /// The bytes of a calibration as it is stored, its signature included.
 pub type Bytes = Vec<u8, MAX_STORED>;
-
-/// One of both slots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Slot {
-    /// The lower one, where a programmer puts a calibration.
-    First,
-    /// The upper one.
-    Second,
-}
-
-impl Slot {
-    /// The other one.
-    #[must_use]
-    pub const fn other(self) -> Self {
-        match self {
-            Self::First => Self::Second,
-            Self::Second => Self::First,
-        }
-    }
-
-    const fn of<T: Copy>(self, [first, second]: [T; 2]) -> T {
-        match self {
-            Self::First => first,
-            Self::Second => second,
-        }
-    }
-}
 
 /// A calibration that a slot holds, whole and intact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,7 +12,7 @@
 //! ```
 //! All numbers lowest byte first.
 
-use crate::storage::Slot;
+use crate::storage::slot::Slot;
 use protocol::crc32;
 use protocol::limits::MAX_STORED;
 
