@@ -1,7 +1,7 @@
 //! From measurements to the device's bits: the straight path on simulated campaigns without a hidden effect.
 
 use firmware_sim::scenario::Scenario;
-use firmware_sim::twin;
+use firmware_sim::simulation;
 use firmware_sim::twin::static_map::StaticMap;
 use firmware_sim::virtual_instrument::VirtualInstrument;
 use protocol::Request;
@@ -24,7 +24,7 @@ struct Case {
 /// A clean campaign, through a file as a user's would come, and a model of it.
 fn clean(seed: u64) -> Case {
     let scenario = Scenario::preset("clean").expect("a built-in scenario");
-    let recording = twin::simulate(&scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
+    let recording = simulation::simulate(&scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
     let folder = TempDir::new().expect("a folder");
     let file = folder.path().join("campaign.csv");
     recording.write_csv(&mut std::fs::File::create(&file).expect("a file")).expect("written");

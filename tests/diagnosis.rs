@@ -2,8 +2,9 @@
 //!
 //! A small part of the blind benchmark (`cargo run --release -p tests --example blind_benchmark`).
 
-use firmware_sim::scenario::{BlindOptions, Scenario};
-use firmware_sim::twin;
+use firmware_sim::blind::{BlindOptions, blinded};
+use firmware_sim::scenario::Scenario;
+use firmware_sim::simulation;
 use std::ops::ControlFlow;
 use tempfile::TempDir;
 use trainer::campaign::{Campaign, HoldOut, ReadOptions};
@@ -32,13 +33,13 @@ fn concealing(mut scenario: Scenario, hidden: &[&str], times_noise: f64, seed: u
             weakest: 0.9 * times_noise,
             strongest: times_noise,
         };
-        scenario = scenario.blinded(seed, &options).expect("the scenario excites it").0;
+        scenario = blinded(&scenario, seed, &options).expect("the scenario excites it").0;
     }
     scenario
 }
 
 fn played(scenario: &Scenario, seed: u64) -> Campaign {
-    let recording = twin::simulate(scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
+    let recording = simulation::simulate(scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
     let folder = TempDir::new().expect("a folder");
     let file = folder.path().join("campaign.csv");
     recording.write_csv(&mut std::fs::File::create(&file).expect("a file")).expect("written");

@@ -1,8 +1,9 @@
 //! How much evidence a diagnosis wants: twice the log-likelihood of 25 beyond the price of the parameters. Less is left
 //! unsaid, because noise reaches it now and then; more is not asked for, because small effects never reach it.
 
-use firmware_sim::scenario::{BlindOptions, Scenario};
-use firmware_sim::twin;
+use firmware_sim::blind::{BlindOptions, blinded};
+use firmware_sim::scenario::Scenario;
+use firmware_sim::simulation;
 use std::ops::ControlFlow;
 use tempfile::TempDir;
 use trainer::campaign::{Campaign, HoldOut, ReadOptions};
@@ -21,8 +22,9 @@ fn findings(times_noise: f64) -> Vec<Finding> {
         weakest: 0.99 * times_noise,
         strongest: times_noise,
     };
-    let (scenario, _) = Scenario::from_toml(SHORT).expect("a scenario").blinded(3, &options).expect("it can be hidden");
-    let recording = twin::simulate(&scenario, 3, &mut |_| ControlFlow::Continue(())).expect("a recording");
+    let (scenario, _) =
+        blinded(&Scenario::from_toml(SHORT).expect("a scenario"), 3, &options).expect("it can be hidden");
+    let recording = simulation::simulate(&scenario, 3, &mut |_| ControlFlow::Continue(())).expect("a recording");
     let folder = TempDir::new().expect("a folder");
     let file = folder.path().join("campaign.csv");
     recording.write_csv(&mut std::fs::File::create(&file).expect("a file")).expect("written");

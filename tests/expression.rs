@@ -3,7 +3,7 @@
 use firmware_core::program::Program;
 use firmware_core::{Compensator, LoadError};
 use firmware_sim::scenario::Scenario;
-use firmware_sim::twin;
+use firmware_sim::simulation;
 use firmware_sim::virtual_instrument::VirtualInstrument;
 use protocol::limits::MAX_PROGRAM;
 use protocol::{Blob, Request, Sample, Status, Term};
@@ -59,7 +59,7 @@ struct Case {
 /// A simulated campaign with an effect put in by hand, so that it shares no formula with what is tested.
 static CASE: LazyLock<Case> = LazyLock::new(|| {
     let scenario = Scenario::from_toml(SCENARIO).expect("a scenario");
-    let recording = twin::simulate(&scenario, 5, &mut |_| ControlFlow::Continue(())).expect("a recording");
+    let recording = simulation::simulate(&scenario, 5, &mut |_| ControlFlow::Continue(())).expect("a recording");
     let folder = TempDir::new().expect("a folder");
     let file = folder.path().join("campaign.csv");
     recording.write_csv(&mut std::fs::File::create(&file).expect("a file")).expect("written");

@@ -1,29 +1,25 @@
 //! What the laboratory does: the device, the rig, the effects and the runs, as a file that a person writes.
 //!
-//! Apart from the twin because a scenario is data: it can be checked, changed and blinded without simulating anything.
+//! Apart from the simulation because a scenario is data: it can be checked and changed without simulating anything.
 
 use serde::{Deserialize, Serialize};
 
+use crate::limit::within;
 use crate::recording::Column;
-use crate::scenario::limit::{Fault, within};
-use crate::scenario::timeline::Timeline;
+use crate::scenario::timeline::{Lab, Timeline};
 use crate::twin::effect::Effects;
 use crate::twin::noise::Noise;
+use crate::twin::rig::Rig;
 use crate::twin::truth::Truth;
 
-mod blind;
+mod error;
 pub mod kind;
-pub mod limit;
-pub mod position;
 mod preset;
 pub mod programme;
-mod rig;
 mod run;
 pub mod timeline;
 
-pub use blind::{BlindError, BlindOptions};
-pub(crate) use rig::ARCSEC;
-pub use rig::Rig;
+pub use error::ScenarioError;
 pub use run::{BadState, Common, Run};
 
 /// A measurement campaign before it is measured.
@@ -119,7 +115,15 @@ impl Scenario {
     /// # Errors
     /// If the runs cannot be laid out on the calendar.
     pub fn rows(&self) -> Result<u64, ScenarioError> {
-        Ok(Timeline::of(self, 0)?.rows(self.step_s))
+        Ok(self.timeline(0)?.rows(self.step_s))
+    }
+
+    /// The runs on the calendar; `seed` decides the random orders.
+    ///
+    /// # Errors
+    /// If the runs cannot be laid out on the calendar.
+    pub fn timeline(&self, seed: u64) -> Result<Timeline<'_>, ScenarioError> {
+        Timeline::of(&self.run, Lab { device: &self.device, rig: &self.rig, step_s: self.step_s }, seed)
     }
 
     /// # Errors
@@ -133,85 +137,12 @@ impl Scenario {
         self.device.check().map_err(part("[device]"))?;
         self.rig.check().map_err(part("[rig]"))?;
         self.noise.check().map_err(part("[noise]"))?;
-        self.effects.check()?;
+        self.effects.check().map_err(|(name, fault)| part(&format!("[effects.{name}]"))(fault))?;
         for run in &self.run {
             run.check().map_err(part(&format!("run `{}`", run.common.name)))?;
         }
-        Timeline::of(self, 0).map(|_| ())
+        self.timeline(0).map(|_| ())
     }
-}
-
-/// Why a scenario cannot be carried out.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ScenarioError {
-    /// The text is not a scenario; the message shows the line.
-    #[error("this is not a scenario: {0}")]
-    Toml(Box<toml::de::Error>),
-    /// A number that cannot be.
-    #[error("in {part}: {fault}")]
-    Part {
-        /// The part of the scenario.
-        part: String,
-        /// The number.
-        fault: Fault,
-    },
-    /// Nothing to do.
-    #[error("the scenario has no run; add at least one `[[run]]` with a `name` and a `kind`")]
-    NoRun,
-    /// Two runs of one name.
-    #[error("two runs are named `{name}`; give every run a name of its own")]
-    SameName {
-        /// The name.
-        name: String,
-    },
-    /// A run that begins while another goes on.
-    #[error(
-        "run `{run}` begins at age {begins_days} days, but the run before it ends at {ends_days:.4} days; \
-         state a later `age_days`, or none to let it follow after the rig's `pause_h`"
-    )]
-    Overlap {
-        /// The run that begins too early.
-        run: String,
-        /// When it begins, days.
-        begins_days: f64,
-        /// When the run before it ends, days.
-        ends_days: f64,
-    },
-    /// A run of which no sample would be kept.
-    #[error("run `{run}` keeps no sample of a part that lasts {part_s} s; lower `record_every_s` to at most that")]
-    KeepsNothing {
-        /// The run.
-        run: String,
-        /// The length of the part, s.
-        part_s: f64,
-    },
-    /// A campaign that no memory holds.
-    #[error("the scenario asks for {rows} samples and more; {limit} is the limit, so raise `record_every_s`")]
-    TooManyRows {
-        /// Samples asked for.
-        rows: u64,
-        /// Samples allowed.
-        limit: u64,
-    },
-    /// A campaign that takes for ever.
-    #[error("the scenario goes through {steps} time steps and more; {limit} is the limit, so raise `step_s`")]
-    TooManySteps {
-        /// Steps asked for.
-        steps: u64,
-        /// Steps allowed.
-        limit: u64,
-    },
-    /// More poses than anybody writes down.
-    #[error(
-        "the runs have {parts} parts and more; {limit} is the limit, so shorten their lists, or `repeat` them less"
-    )]
-    TooManyParts {
-        /// Parts asked for.
-        parts: usize,
-        /// Parts allowed.
-        limit: usize,
-    },
 }
 
 #[cfg(test)]

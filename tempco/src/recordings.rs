@@ -6,8 +6,8 @@
 use firmware_sim::recording::{Column, RecordedRun, Row as Recorded};
 use firmware_sim::scenario::Run as ScenarioRun;
 use firmware_sim::scenario::Scenario;
-use firmware_sim::scenario::timeline::Timeline;
-use firmware_sim::twin::{self, Noise};
+use firmware_sim::simulation;
+use firmware_sim::twin::Noise;
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -125,8 +125,8 @@ fn columns(campaign: &Campaign, own: &[Column], wanted: &[&str]) -> Vec<Column> 
 /// What the recording would be, row by row.
 fn planned(scenario: &Scenario, campaign: &Campaign) -> Result<Recording, Failure> {
     let quiet = Scenario { noise: Noise::off(), ..scenario.clone() };
-    let recording = twin::simulate(&quiet, 1, &mut |_| ControlFlow::Continue(())).map_err(Failure::new)?;
-    let timeline = Timeline::of(&quiet, 1).map_err(Failure::new)?;
+    let recording = simulation::simulate(&quiet, 1, &mut |_| ControlFlow::Continue(())).map_err(Failure::new)?;
+    let timeline = quiet.timeline(1).map_err(Failure::new)?;
     let ends_s = timeline.runs.last().map_or(0.0, |run| run.begins_s + run.duration_s());
     let begins_s = timeline.runs.first().map_or(0.0, |run| run.begins_s);
     let channels: Vec<Column> = CHANNELS.into_iter().filter(|column| scenario.columns.contains(column)).collect();

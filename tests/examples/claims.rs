@@ -5,7 +5,7 @@
 //! ```
 
 use firmware_sim::scenario::Scenario;
-use firmware_sim::twin;
+use firmware_sim::simulation;
 use firmware_sim::twin::static_map::StaticMap;
 use protocol::Sample;
 use std::ops::ControlFlow;
@@ -34,7 +34,7 @@ struct Measured {
 
 fn measure(preset: &str, seed: u64) -> Measured {
     let scenario = Scenario::preset(preset).expect("a built-in scenario");
-    let recording = twin::simulate(&scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
+    let recording = simulation::simulate(&scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
     let folder = TempDir::new().expect("a folder");
     let file = folder.path().join("campaign.csv");
     recording.write_csv(&mut std::fs::File::create(&file).expect("a file")).expect("written");

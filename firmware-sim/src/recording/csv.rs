@@ -2,7 +2,8 @@
 
 use std::io::{self, Write};
 
-use super::{Column, RecordedRun, Row};
+use super::column::Column;
+use super::row::{RecordedRun, Row};
 
 /// Frequencies to 1 µHz, temperatures to 1 µ°C, times to 1 µs, accelerations to 1 ng.
 pub(super) fn write(out: &mut impl Write, columns: &[Column], runs: &[RecordedRun]) -> io::Result<()> {
@@ -31,43 +32,6 @@ fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.into() }
 }
 
-impl Column {
-    /// The column's header.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::PowerOnS => "power_on_s",
-            Self::AgeDays => "age_days",
-            Self::F1Hz => "f1_hz",
-            Self::F2Hz => "f2_hz",
-            Self::SumFHz => "sum_f_hz",
-            Self::ReferenceSigmaG => "reference_sigma_g",
-            Self::CrossG => "cross_g",
-            Self::SupplyV => "supply_v",
-            Self::VibrationG2 => "vibration_g2",
-            Self::PressurePa => "pressure_pa",
-            Self::HumidityPct => "humidity_pct",
-        }
-    }
-
-    /// A comma and the value, with as many decimals as mean something.
-    fn write(self, row: &Row, out: &mut impl Write) -> io::Result<()> {
-        match self {
-            Self::PowerOnS => write!(out, ",{}", row.power_on_s),
-            Self::AgeDays => write!(out, ",{:.6}", row.age_days),
-            Self::F1Hz => write!(out, ",{:.6}", row.f1_hz),
-            Self::F2Hz => write!(out, ",{:.6}", row.f2_hz),
-            Self::SumFHz => write!(out, ",{:.6}", row.sum_f_hz),
-            Self::ReferenceSigmaG => write!(out, ",{:.9}", row.reference_sigma_g),
-            Self::CrossG => write!(out, ",{:.9}", row.cross_g),
-            Self::SupplyV => write!(out, ",{:.6}", row.supply_v),
-            Self::VibrationG2 => write!(out, ",{:.6}", row.vibration_g2),
-            Self::PressurePa => write!(out, ",{:.1}", row.pressure_pa),
-            Self::HumidityPct => write!(out, ",{:.3}", row.humidity_pct),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,12 +39,5 @@ mod tests {
     #[test]
     fn a_name_is_quoted_only_where_it_must_be() {
         assert_eq!((quoted("full-1"), quoted("a,\"b\"")), ("full-1".into(), "\"a,\"\"b\"\"\"".into()));
-    }
-
-    #[test]
-    fn headers_are_the_names_that_scenarios_use() {
-        for column in [Column::PowerOnS, Column::F1Hz, Column::VibrationG2, Column::ReferenceSigmaG] {
-            assert_eq!(toml::Value::try_from(column).unwrap().as_str(), Some(column.name()));
-        }
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! Apart from the kinds of run so that the twin knows one thing only, and a new kind is a new way to write segments.
 
-use crate::scenario::position::Position;
-use crate::scenario::rig::Rig;
+use crate::twin::position::Position;
+use crate::twin::rig::Rig;
 use crate::twin::truth::Truth;
 
 /// A stretch of time in which everything stands still, except the chamber's set point, which may go straight.
@@ -33,6 +33,20 @@ pub struct Segment {
     pub pressure_pa: f64,
     /// Relative humidity, percent.
     pub humidity_pct: f64,
+}
+
+impl Segment {
+    /// How many steps it takes.
+    #[must_use]
+    pub fn steps(&self, step_s: f64) -> u64 {
+        (self.duration_s / step_s).round() as u64
+    }
+
+    /// The set point after `passed` of its time, a fraction, °C.
+    #[must_use]
+    pub fn setpoint_c(&self, passed: f64) -> f64 {
+        self.from_c + (self.to_c - self.from_c) * passed
+    }
 }
 
 /// The most parts that the runs of a scenario may have.

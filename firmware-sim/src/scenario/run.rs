@@ -4,8 +4,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scenario::kind::{CHAMBER_C, Kind, LONGEST_S};
-use crate::scenario::limit::{Fault, positive, up_to, within};
+use crate::limit::{CHAMBER_C, Fault, LONGEST_S, positive, up_to, within};
+use crate::scenario::kind::Kind;
+use crate::scenario::programme::Segment;
 
 /// What every run states besides its kind. All but the name may be left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +47,14 @@ pub struct BadState {
     pub position_deg: f64,
     /// How wrong the difference frequency is, Hz.
     pub delta_f_hz: f64,
+}
+
+impl BadState {
+    /// How wrong the first fork is in this segment, Hz.
+    pub(crate) fn shift_hz(&self, segment: &Segment) -> f64 {
+        let here = segment.to_c == self.temperature_c && segment.position.angle_deg == self.position_deg;
+        if here { self.delta_f_hz } else { 0.0 }
+    }
 }
 
 /// One run of the scenario, or several that are alike.

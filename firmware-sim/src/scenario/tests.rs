@@ -19,7 +19,7 @@ fn every_preset_can_be_carried_out_and_survives_writing() {
 fn runs_follow_each_other_after_the_pause_or_at_their_age() {
     let text = format!("{MINIMAL}repeat = 2\n[[run]]\nname = 'late'\nkind = 'zero'\nage_days = 30\n");
     let scenario = Scenario::from_toml(&text).unwrap();
-    let timeline = Timeline::of(&scenario, 0).unwrap();
+    let timeline = scenario.timeline(0).unwrap();
     let plan: Vec<_> = timeline.runs.iter().map(|run| (run.name.as_str(), run.begins_s)).collect();
     assert_eq!(plan, [("z-1", 0.0), ("z-2", 5400.0 + 43_200.0), ("late", 30.0 * 86_400.0)]);
 }

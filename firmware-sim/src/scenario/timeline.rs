@@ -2,18 +2,31 @@
 //!
 //! Apart from the simulation so that a scenario can be refused, and its length told, before anything is simulated.
 
+use crate::scenario::error::ScenarioError;
 use crate::scenario::programme::{MAX_SEGMENTS, Programme, Segment};
-use crate::scenario::{Run, Scenario, ScenarioError};
+use crate::scenario::run::Run;
+use crate::twin::conditions::DAY_S;
 use crate::twin::random::Random;
+use crate::twin::rig::Rig;
+use crate::twin::truth::Truth;
 use std::collections::HashSet;
 
-/// Seconds in a day.
-pub(crate) const DAY_S: f64 = 86_400.0;
 /// The most samples that a scenario may ask for: about 2 GB in memory.
 const MAX_ROWS: u64 = 10_000_000;
 
 /// The most time steps that may be simulated: an hour or so of work.
 const MAX_STEPS: u64 = 10_000_000_000;
+
+/// What the calendar must know besides the runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Lab<'a> {
+    /// The device.
+    pub device: &'a Truth,
+    /// The laboratory.
+    pub rig: &'a Rig,
+    /// Time step of the simulation, s.
+    pub step_s: f64,
+}
 
 /// All runs of a scenario in order of time.
 #[derive(Clone, Debug)]
@@ -38,21 +51,21 @@ pub struct PlannedRun<'a> {
 }
 
 impl<'a> Timeline<'a> {
-    /// Lays the scenario out; `seed` decides the random orders.
+    /// Lays the runs out; `seed` decides the random orders.
     ///
     /// # Errors
     /// If runs overlap, share a name, keep nothing, or keep too much.
-    pub fn of(scenario: &'a Scenario, seed: u64) -> Result<Self, ScenarioError> {
+    pub fn of(runs_in_order: &'a [Run], lab: Lab<'_>, seed: u64) -> Result<Self, ScenarioError> {
         let mut runs: Vec<PlannedRun> = Vec::new();
         let mut names = HashSet::new();
         let mut sum = Sum::default();
-        for run in &scenario.run {
+        for run in runs_in_order {
             for repetition in 0..run.common.repeat {
                 let ends_s = runs.last().map(|run| run.begins_s + run.duration_s());
-                let begins_s = begins_s(scenario, run, repetition, ends_s)?;
-                let planned = PlannedRun::new(scenario, run, repetition, begins_s, seed ^ runs.len() as u64);
-                planned.check(scenario.step_s)?;
-                sum.add(&planned, scenario.step_s)?;
+                let begins_s = begins_s(lab.rig, run, repetition, ends_s)?;
+                let planned = PlannedRun::new(lab, run, repetition, begins_s, seed ^ runs.len() as u64);
+                planned.check(lab.step_s)?;
+                sum.add(&planned, lab.step_s)?;
                 if !names.insert(planned.name.clone()) {
                     return Err(ScenarioError::SameName { name: planned.name });
                 }
@@ -104,10 +117,10 @@ impl Sum {
 }
 
 /// When a repetition begins: at its stated age, or one pause after what was before it.
-fn begins_s(scenario: &Scenario, run: &Run, repetition: u32, ends_s: Option<f64>) -> Result<f64, ScenarioError> {
+fn begins_s(rig: &Rig, run: &Run, repetition: u32, ends_s: Option<f64>) -> Result<f64, ScenarioError> {
     let stated_days = run.common.age_days.filter(|_| repetition == 0);
     let Some(begins_days) = stated_days else {
-        return Ok(ends_s.map_or(0.0, |ends_s| ends_s + scenario.rig.pause_h * 3600.0));
+        return Ok(ends_s.map_or(0.0, |ends_s| ends_s + rig.pause_h * 3600.0));
     };
     let begins_s = begins_days * DAY_S;
     match ends_s {
@@ -119,14 +132,14 @@ fn begins_s(scenario: &Scenario, run: &Run, repetition: u32, ends_s: Option<f64>
 }
 
 impl<'a> PlannedRun<'a> {
-    fn new(scenario: &Scenario, run: &'a Run, repetition: u32, begins_s: f64, seed: u64) -> Self {
-        let mut programme = Programme::new(&scenario.device, &scenario.rig, run.common.mount_rotation_deg);
+    fn new(lab: Lab<'_>, run: &'a Run, repetition: u32, begins_s: f64, seed: u64) -> Self {
+        let mut programme = Programme::new(lab.device, lab.rig, run.common.mount_rotation_deg);
         run.kind.write(&mut programme, &mut Random::stream(seed, "order", 0));
         Self {
             name: run.name(repetition),
             run,
             begins_s,
-            every: ((run.common.record_every_s / scenario.step_s).round() as u64).max(1),
+            every: ((run.common.record_every_s / lab.step_s).round() as u64).max(1),
             segments: programme.segments(),
         }
     }
@@ -151,19 +164,5 @@ impl<'a> PlannedRun<'a> {
             }
             _ => Ok(()),
         }
-    }
-}
-
-impl Segment {
-    /// How many steps it takes.
-    #[must_use]
-    pub fn steps(&self, step_s: f64) -> u64 {
-        (self.duration_s / step_s).round() as u64
-    }
-
-    /// The set point after `passed` of its time, a fraction, °C.
-    #[must_use]
-    pub fn setpoint_c(&self, passed: f64) -> f64 {
-        self.from_c + (self.to_c - self.from_c) * passed
     }
 }

@@ -2,8 +2,11 @@
 //!
 //! Apart from the effects so that they know the laboratory and the signal path, and not each other.
 
-use crate::scenario::position::Position;
+use crate::twin::position::Position;
 use crate::twin::static_map::StaticMap;
+
+/// Seconds in a day.
+pub const DAY_S: f64 = 86_400.0;
 
 /// Everything that is true around the device at the end of one step.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 //!
 //! Apart from the noise because it is computed from the parameters alone: the simulation is tested against it.
 
-use crate::scenario::{ARCSEC, Rig};
 use crate::twin::noise::Noise;
+use crate::twin::rig::{ARCSEC, Rig};
 use crate::twin::static_map::StaticMap;
 use crate::twin::thermometer;
 use crate::twin::truth::Truth;

@@ -1,8 +1,8 @@
 //! What the rig really applies: the pose that it believes in, and its own errors.
 
-use crate::scenario::position::Position;
-use crate::scenario::{ARCSEC, Rig};
+use crate::twin::position::Position;
 use crate::twin::random::Random;
+use crate::twin::rig::{ARCSEC, Rig};
 
 /// The rig's errors in one run.
 #[derive(Clone, Debug)]

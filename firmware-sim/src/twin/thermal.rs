@@ -3,8 +3,8 @@
 //! Apart from the effects because thermometer and forks share it: whatever it does, a static map still holds. Only an
 //! effect separates the two.
 
-use crate::scenario::Rig;
 use crate::twin::lag::{follow, relax};
+use crate::twin::rig::Rig;
 use crate::twin::truth::Truth;
 
 /// Temperatures that follow the chamber's set point.

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scenario::limit::{Fault, positive, within};
+use crate::limit::{Fault, positive, within};
 
 /// All parameters of the device, without any switchable effect.
 ///

@@ -10,7 +10,7 @@ use crate::terminal::say;
 use clap::Args;
 use firmware_sim::recording::Recording;
 use firmware_sim::scenario::Scenario;
-use firmware_sim::twin;
+use firmware_sim::simulation;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -96,7 +96,7 @@ pub fn scenario(name: &str) -> Result<Scenario, Failure> {
 /// Carries out a scenario with a progress bar.
 pub fn simulate(scenario: &Scenario, seed: u64) -> Result<Recording, Failure> {
     let bar = bar(100, "measuring");
-    let recording = twin::simulate(scenario, seed, &mut |done| {
+    let recording = simulation::simulate(scenario, seed, &mut |done| {
         bar.set_position((done * 100.0) as u64);
         ControlFlow::Continue(())
     });

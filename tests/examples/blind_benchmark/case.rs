@@ -2,10 +2,11 @@
 
 use crate::options::{Class, Options, Protocol};
 use crate::visible::{Visible, visible};
+use firmware_sim::blind::{self, BlindError, BlindOptions};
 use firmware_sim::recording::{Column, Recording};
-use firmware_sim::scenario::{BlindError, BlindOptions, Scenario};
+use firmware_sim::scenario::Scenario;
 use firmware_sim::seal::SealedTruth;
-use firmware_sim::twin;
+use firmware_sim::simulation;
 use firmware_sim::twin::effect::Effects;
 use firmware_sim::twin::random::Random;
 use std::ops::ControlFlow;
@@ -72,15 +73,15 @@ impl Case {
 /// How often another seed is tried: an effect that isn't proportional to its parameter may miss the size asked for.
 const ATTEMPTS: u64 = 3;
 
-fn blinded(scenario: &Scenario, seed: u64, blind: &BlindOptions) -> Result<(u64, Scenario, SealedTruth), String> {
+fn blinded(scenario: &Scenario, seed: u64, options: &BlindOptions) -> Result<(u64, Scenario, SealedTruth), String> {
     for seed in seed..seed + ATTEMPTS {
-        match scenario.blinded(seed, blind) {
+        match blind::blinded(scenario, seed, options) {
             Ok((blinded, truth)) => return Ok((seed, blinded, truth)),
             Err(BlindError::TooFew { .. }) => {}
             Err(error) => return Err(error.to_string()),
         }
     }
-    Err(format!("{} not excited by this protocol", blind.candidates.join(", ")))
+    Err(format!("{} not excited by this protocol", options.candidates.join(", ")))
 }
 
 /// What may be hidden in campaign number `index`, and how often the list of effects has been gone through before.
@@ -137,7 +138,7 @@ fn hidden(truth: &SealedTruth, seed: u64) -> Result<Vec<Hidden>, String> {
 }
 
 pub fn simulated(scenario: &Scenario, seed: u64) -> Result<Recording, String> {
-    twin::simulate(scenario, seed, &mut |_| ControlFlow::Continue(())).map_err(|error| error.to_string())
+    simulation::simulate(scenario, seed, &mut |_| ControlFlow::Continue(())).map_err(|error| error.to_string())
 }
 
 /// Through a file, as a user's would come: rounding is part of the measurement.

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{CHAMBER_C, LONGEST_S, Order, record_positions};
-use crate::scenario::limit::{Fault, up_to, within};
-use crate::scenario::position::{self, Position};
+use super::order::{Order, record_positions};
+use crate::limit::{CHAMBER_C, Fault, LONGEST_S, up_to, within};
 use crate::scenario::programme::Programme;
+use crate::twin::position::{self, Position};
 use crate::twin::random::Random;
 
 /// The short test that is repeated over months. Levels beyond 1 g are a centrifuge's.

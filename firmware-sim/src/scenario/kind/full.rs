@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{CHAMBER_C, LONGEST_S, Order, record_positions};
-use crate::scenario::limit::{Fault, each_within, up_to, within};
-use crate::scenario::position::{self, Position};
+use super::order::{Order, record_positions};
+use crate::limit::{CHAMBER_C, Fault, LONGEST_S, each_within, up_to, within};
 use crate::scenario::programme::Programme;
+use crate::twin::position::{self, Position};
 use crate::twin::random::Random;
 
 /// The full-temperature test of Micromachines 2022, 13(7), 1054: at every node an hour of soak, then +0, +1, −0, −1 g.

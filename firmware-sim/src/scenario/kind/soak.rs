@@ -2,10 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{CHAMBER_C, LONGEST_S};
-use crate::scenario::limit::{Fault, each_within, up_to, within};
-use crate::scenario::position::Position;
+use crate::limit::{CHAMBER_C, Fault, LONGEST_S, each_within, up_to, within};
 use crate::scenario::programme::Programme;
+use crate::twin::position::Position;
 use crate::twin::random::Random;
 
 /// From room temperature to one temperature after another, recorded all the time: what creeps shows.

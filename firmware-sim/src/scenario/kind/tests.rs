@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use crate::recording::Row;
 use crate::scenario::Scenario;
 use crate::scenario::kind::Kind;
-use crate::twin::simulate;
+use crate::simulation::simulate;
 
 /// The rows of one run of this kind with its defaults, changed by `more`.
 fn rows(kind: &str, more: &str) -> Vec<Row> {

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{CHAMBER_C, LONGEST_S, Order, record_positions};
-use crate::scenario::limit::{Fault, each_within, up_to, within};
-use crate::scenario::position::{Position, around};
+use super::order::{Order, record_positions};
+use crate::limit::{CHAMBER_C, Fault, LONGEST_S, each_within, up_to, within};
 use crate::scenario::programme::Programme;
+use crate::twin::position::{Position, around};
 use crate::twin::random::Random;
 
 /// The multipoint test of IEEE Std 1293: the input axis sees the sine of the angle, the pendulous axis its cosine.

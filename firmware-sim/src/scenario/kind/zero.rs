@@ -2,10 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::LONGEST_S;
-use crate::scenario::limit::{Fault, up_to, within};
-use crate::scenario::position::Position;
+use crate::limit::{Fault, LONGEST_S, up_to, within};
 use crate::scenario::programme::Programme;
+use crate::twin::position::Position;
 use crate::twin::random::Random;
 
 /// Recording begins at power-on, from cold. By default the input axis is level.

@@ -1,9 +1,9 @@
 //! A bench for one effect: conditions by hand, no laboratory around it.
 
 use super::{Effect, Setting, Switch};
-use crate::scenario::Rig;
-use crate::scenario::position::Position;
 use crate::twin::conditions::{Conditions, Input};
+use crate::twin::position::Position;
+use crate::twin::rig::Rig;
 use crate::twin::static_map::StaticMap;
 use crate::twin::truth::Truth;
 

@@ -11,7 +11,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Effect, Setting, Switch};
-use crate::scenario::limit::{Fault, within};
+use crate::limit::{Fault, within};
 use crate::twin::conditions::{Conditions, Forks};
 use crate::twin::random::Random;
 

@@ -10,7 +10,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Effect, STRESS_MISMATCH, Setting, Switch};
-use crate::scenario::limit::{Fault, within};
+use crate::limit::{Fault, within};
 use crate::twin::conditions::{Conditions, Forks};
 use crate::twin::random::Random;
 

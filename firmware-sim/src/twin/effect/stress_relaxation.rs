@@ -11,7 +11,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Effect, STRESS_MISMATCH, Setting, Switch};
-use crate::scenario::limit::{Fault, positive, within};
+use crate::limit::{Fault, positive, within};
 use crate::twin::conditions::{Conditions, Forks};
 use crate::twin::random::Random;
 

@@ -10,8 +10,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Effect, Setting, Switch};
-use crate::scenario::limit::{Fault, positive, within};
-use crate::scenario::timeline::DAY_S;
+use crate::limit::{Fault, positive, within};
+use crate::twin::conditions::DAY_S;
 use crate::twin::conditions::{Conditions, Input};
 use crate::twin::random::Random;
 

@@ -131,8 +131,8 @@ fn perfection(scenario: &Scenario, seed: u64) -> Result<Perfection, Failure> {
     let bar = bar(1 + OTHERS + without.len() as u64, "judging");
     let perfect = |scenario: &Scenario, seed: u64| {
         bar.inc(1);
-        let recording =
-            firmware_sim::twin::simulate(scenario, seed, &mut |_| ControlFlow::Continue(())).map_err(Failure::new)?;
+        let recording = firmware_sim::simulation::simulate(scenario, seed, &mut |_| ControlFlow::Continue(()))
+            .map_err(Failure::new)?;
         Ok::<_, Failure>(Judgement::perfect(&in_memory(&recording), &Map(recording.static_map()))?)
     };
     let perfection = Perfection {

@@ -6,7 +6,8 @@ use crate::output::{Kind, Output, Prepared};
 use crate::progress::spinner;
 use crate::shell;
 use clap::Args;
-use firmware_sim::scenario::{BlindError, BlindOptions, Scenario};
+use firmware_sim::blind::{self, BlindError, BlindOptions};
+use firmware_sim::scenario::Scenario;
 use firmware_sim::seal::{CampaignDigest, seal};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -74,7 +75,7 @@ impl Blind {
         campaign.check()?;
         sealed.check()?;
         let spinner = spinner("choosing what to hide");
-        let blinded = scenario.blinded(seed, &self.options());
+        let blinded = blind::blinded(scenario, seed, &self.options());
         spinner.finish_and_clear();
         let (blinded, truth) = blinded.map_err(failure)?;
         let recording = simulate(&blinded, seed)?;

@@ -1,10 +1,12 @@
 //! Plays runs: the one loop in which everything is stepped and sampled.
 
+use super::error::SimulateError;
+use super::ticker::Ticker;
 use crate::recording::{RecordedRun, Row, RowTruth, micro};
+use crate::scenario::Scenario;
 use crate::scenario::programme::Segment;
-use crate::scenario::timeline::{DAY_S, PlannedRun};
-use crate::scenario::{BadState, Scenario};
-use crate::twin::conditions::{Conditions, Forks, Input};
+use crate::scenario::timeline::PlannedRun;
+use crate::twin::conditions::{Conditions, DAY_S, Forks, Input};
 use crate::twin::effect::{Effect, Setting};
 use crate::twin::noise::ForkNoise;
 use crate::twin::noise_floor::{NoiseFloor, SampleAt};
@@ -12,7 +14,7 @@ use crate::twin::random::Random;
 use crate::twin::rig_error::RigError;
 use crate::twin::static_map::StaticMap;
 use crate::twin::thermal::Thermal;
-use crate::twin::{SimulateError, Ticker, thermometer};
+use crate::twin::thermometer;
 
 /// The device in its laboratory, at one instant of its life.
 pub(super) struct Twin<'a> {
@@ -209,13 +211,5 @@ impl Session<'_> {
             (true, since) => since,
             (false, _) => None,
         };
-    }
-}
-
-impl BadState {
-    /// How wrong the first fork is in this segment, Hz.
-    fn shift_hz(&self, segment: &Segment) -> f64 {
-        let here = segment.to_c == self.temperature_c && segment.position.angle_deg == self.position_deg;
-        if here { self.delta_f_hz } else { 0.0 }
     }
 }

@@ -1,6 +1,6 @@
 //! How the device lies in the field of gravity.
 
-use crate::scenario::limit::{Fault, not_too_many, within};
+use crate::limit::{Fault, not_too_many, within};
 
 /// One pose of the device on the rig, as the rig believes it to be.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scenario::limit::{Fault, positive, within};
+use crate::limit::{Fault, positive, within};
 
 /// The test rig. Its errors are off by default: the reference is then exact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::recording::RecordedRun;
+use crate::twin::{Noise, StaticMap};
 
 fn go_on(_: f64) -> ControlFlow<()> {
     ControlFlow::Continue(())

@@ -6,9 +6,10 @@ use std::ops::ControlFlow;
 
 use crate::scenario::Scenario;
 use crate::seal::{HiddenEffect, SealedTruth};
+use crate::simulation::{SimulateError, simulate};
 use crate::twin::effect::Effects;
 use crate::twin::random::Random;
-use crate::twin::{Noise, SimulateError, StaticMap, simulate};
+use crate::twin::{Noise, StaticMap};
 
 /// What may be hidden.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,80 +80,83 @@ const SIZE_TOLERANCE: f64 = 0.05;
 /// How often the size is corrected; a linear effect needs one correction.
 const CORRECTIONS: usize = 6;
 
-impl Scenario {
-    /// Hides effects in the scenario: which ones, how many, how strong and with what time constants, `seed` decides.
-    ///
-    /// The blinded scenario is to be simulated and then forgotten; the truth is for [`crate::seal::seal`].
-    ///
-    /// # Errors
-    /// If a candidate does not exist, or the scenario does not excite enough of them.
-    pub fn blinded(&self, seed: u64, options: &BlindOptions) -> Result<(Self, SealedTruth), BlindError> {
-        if let Some(name) = options.candidates.iter().find(|name| !Effects::NAMES.contains(&name.as_str())) {
-            return Err(BlindError::NoSuchEffect { name: name.clone() });
-        }
-        let mut random = Random::stream(seed, "blind", 0);
-        let noise_floor_ug = simulate(self, seed, &mut go_on)?.noise_floor_ug();
-        let wanted = options.at_least + random.below(options.at_most.saturating_sub(options.at_least) + 1);
-        let active = self.effects.active();
-        let mut candidates: Vec<&String> =
-            options.candidates.iter().filter(|name| !active.contains(&name.as_str())).collect();
-        random.shuffle(&mut candidates);
-
-        let mut scenario = Self { name: format!("{}-blind", self.name), description: String::new(), ..self.clone() };
-        let mut hidden = Vec::new();
-        for name in candidates {
-            if hidden.len() == wanted {
-                break;
-            }
-            let times_noise = random.log_between(options.weakest, options.strongest);
-            if let Some((factor, influence_ug)) = self.sized(name, times_noise * noise_floor_ug, seed)? {
-                scenario.effects.switch_on_varied(name, factor, seed);
-                let times_noise = influence_ug / noise_floor_ug;
-                hidden.push(HiddenEffect { name: name.clone(), influence_ug, times_noise });
-            }
-        }
-        if hidden.len() < wanted {
-            return Err(BlindError::TooFew { found: hidden.len(), wanted });
-        }
-        hidden.sort_by(|a, b| b.influence_ug.total_cmp(&a.influence_ug));
-        let truth = SealedTruth { blind_seed: seed, noise_floor_ug, hidden, scenario: scenario.clone() };
-        Ok((scenario, truth))
+/// Hides effects in the scenario: which ones, how many, how strong and with what time constants, `seed` decides.
+///
+/// The blinded scenario is to be simulated and then forgotten; the truth is for [`crate::seal::seal`].
+///
+/// # Errors
+/// If a candidate does not exist, or the scenario does not excite enough of them.
+pub fn blinded(scenario: &Scenario, seed: u64, options: &BlindOptions) -> Result<(Scenario, SealedTruth), BlindError> {
+    if let Some(name) = options.candidates.iter().find(|name| !Effects::NAMES.contains(&name.as_str())) {
+        return Err(BlindError::NoSuchEffect { name: name.clone() });
     }
+    let mut random = Random::stream(seed, "blind", 0);
+    let noise_floor_ug = simulate(scenario, seed, &mut go_on)?.noise_floor_ug();
+    let wanted = options.at_least + random.below(options.at_most.saturating_sub(options.at_least) + 1);
+    let active = scenario.effects.active();
+    let mut candidates: Vec<&String> =
+        options.candidates.iter().filter(|name| !active.contains(&name.as_str())).collect();
+    random.shuffle(&mut candidates);
 
-    /// Scatter that one effect alone, its default times `factor`, leaves behind a perfect static compensation of this
-    /// campaign, µg. Its mean over the campaign does not count, as any calibration takes it up.
-    ///
-    /// # Errors
-    /// If the scenario cannot be simulated.
-    pub fn influence_ug(&self, effect: &str, factor: f64, seed: u64) -> Result<f64, SimulateError> {
-        let mut alone =
-            Self { noise: Noise::off(), rig: self.rig.without_errors(), effects: Effects::default(), ..self.clone() };
-        alone.effects.switch_on_varied(effect, factor, seed);
-        let map = StaticMap::new(&alone.device);
-        let recording = simulate(&alone, seed, &mut go_on)?;
-        let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
-        for row in recording.runs.iter().flat_map(|run| &run.rows) {
-            let off_ug = (map.acceleration_g(row.delta_f_hz, row.temperature_c) - row.reference_g) * 1e6;
-            (count, sum, squares) = (count + 1.0, sum + off_ug, squares + off_ug * off_ug);
+    let mut blinded =
+        Scenario { name: format!("{}-blind", scenario.name), description: String::new(), ..scenario.clone() };
+    let mut hidden = Vec::new();
+    for name in candidates {
+        if hidden.len() == wanted {
+            break;
         }
-        Ok((squares / count - (sum / count).powi(2)).max(0.0).sqrt())
+        let times_noise = random.log_between(options.weakest, options.strongest);
+        if let Some((factor, influence_ug)) = sized(scenario, name, times_noise * noise_floor_ug, seed)? {
+            blinded.effects.switch_on_varied(name, factor, seed);
+            let times_noise = influence_ug / noise_floor_ug;
+            hidden.push(HiddenEffect { name: name.clone(), influence_ug, times_noise });
+        }
     }
+    if hidden.len() < wanted {
+        return Err(BlindError::TooFew { found: hidden.len(), wanted });
+    }
+    hidden.sort_by(|a, b| b.influence_ug.total_cmp(&a.influence_ug));
+    let truth = SealedTruth { blind_seed: seed, noise_floor_ug, hidden, scenario: blinded.clone() };
+    Ok((blinded, truth))
+}
 
-    /// The factor that gives an effect the wanted influence, and the influence reached; `None` if it cannot.
-    fn sized(&self, effect: &str, wanted_ug: f64, seed: u64) -> Result<Option<(f64, f64)>, SimulateError> {
-        let mut factor = 1.0;
-        for _ in 0..CORRECTIONS {
-            let reached_ug = self.influence_ug(effect, factor, seed)?;
-            if (reached_ug / wanted_ug - 1.0).abs() < SIZE_TOLERANCE {
-                return Ok(Some((factor, reached_ug)));
-            }
-            if reached_ug < NOT_EXCITED_UG {
-                return Ok(None);
-            }
-            factor *= wanted_ug / reached_ug;
-        }
-        Ok(None)
+/// Scatter that one effect alone, its default times `factor`, leaves behind a perfect static compensation of this
+/// campaign, µg. Its mean over the campaign does not count, as any calibration takes it up.
+///
+/// # Errors
+/// If the scenario cannot be simulated.
+pub fn influence_ug(scenario: &Scenario, effect: &str, factor: f64, seed: u64) -> Result<f64, SimulateError> {
+    let mut alone = Scenario {
+        noise: Noise::off(),
+        rig: scenario.rig.without_errors(),
+        effects: Effects::default(),
+        ..scenario.clone()
+    };
+    alone.effects.switch_on_varied(effect, factor, seed);
+    let map = StaticMap::new(&alone.device);
+    let recording = simulate(&alone, seed, &mut go_on)?;
+    let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    for row in recording.runs.iter().flat_map(|run| &run.rows) {
+        let off_ug = (map.acceleration_g(row.delta_f_hz, row.temperature_c) - row.reference_g) * 1e6;
+        (count, sum, squares) = (count + 1.0, sum + off_ug, squares + off_ug * off_ug);
     }
+    Ok((squares / count - (sum / count).powi(2)).max(0.0).sqrt())
+}
+
+/// The factor that gives an effect the wanted influence, and the influence reached; `None` if it cannot.
+fn sized(scenario: &Scenario, effect: &str, wanted_ug: f64, seed: u64) -> Result<Option<(f64, f64)>, SimulateError> {
+    let mut factor = 1.0;
+    for _ in 0..CORRECTIONS {
+        let reached_ug = influence_ug(scenario, effect, factor, seed)?;
+        if (reached_ug / wanted_ug - 1.0).abs() < SIZE_TOLERANCE {
+            return Ok(Some((factor, reached_ug)));
+        }
+        if reached_ug < NOT_EXCITED_UG {
+            return Ok(None);
+        }
+        factor *= wanted_ug / reached_ug;
+    }
+    Ok(None)
 }
 
 /// Below the microhertz of the table an effect is not there.
@@ -170,7 +174,7 @@ mod tests {
     fn the_rich_scenario_excites_every_effect() {
         let scenario = Scenario::preset("rich").unwrap();
         for name in Effects::NAMES {
-            let influence_ug = scenario.influence_ug(name, 1.0, 1).unwrap();
+            let influence_ug = influence_ug(&scenario, name, 1.0, 1).unwrap();
             assert!(influence_ug > NOT_EXCITED_UG, "{name}: {influence_ug} µg");
         }
     }
@@ -179,7 +183,7 @@ mod tests {
     fn what_is_hidden_is_as_strong_as_it_says_and_the_name_does_not_tell() {
         let scenario = Scenario::preset("clean").unwrap();
         for seed in 0..8 {
-            let (blinded, truth) = scenario.blinded(seed, &BlindOptions::default()).unwrap();
+            let (blinded, truth) = blinded(&scenario, seed, &BlindOptions::default()).unwrap();
             assert_eq!((blinded.name.as_str(), blinded.description.as_str()), ("clean-blind", ""));
             assert!((1..=2).contains(&truth.hidden.len()), "seed {seed}");
             assert_eq!(blinded.effects.active().len(), truth.hidden.len());
@@ -193,7 +197,7 @@ mod tests {
     #[test]
     fn the_same_seed_hides_the_same_and_seeds_differ() {
         let scenario = Scenario::preset("clean").unwrap();
-        let hide = |seed| scenario.blinded(seed, &BlindOptions::default()).unwrap().1;
+        let hide = |seed| blinded(&scenario, seed, &BlindOptions::default()).unwrap().1;
         assert_eq!(hide(3), hide(3));
         assert_ne!(hide(3).hidden, hide(4).hidden);
     }
@@ -202,15 +206,15 @@ mod tests {
     fn what_the_scenario_does_not_excite_is_not_hidden_in_it() {
         let scenario = Scenario::preset("clean").unwrap();
         let only = |name: &str| BlindOptions { candidates: vec![name.into()], at_most: 1, ..BlindOptions::default() };
-        let error = scenario.blinded(1, &only("vibration-rectification")).unwrap_err();
+        let error = blinded(&scenario, 1, &only("vibration-rectification")).unwrap_err();
         assert_eq!(error, BlindError::TooFew { found: 0, wanted: 1 });
-        assert!(matches!(scenario.blinded(1, &only("gravity")), Err(BlindError::NoSuchEffect { .. })));
+        assert!(matches!(blinded(&scenario, 1, &only("gravity")), Err(BlindError::NoSuchEffect { .. })));
     }
 
     #[test]
     fn outside_the_catalogue_only_unknown_effects_are_hidden() {
         let scenario = Scenario::preset("clean").unwrap();
-        let (_, truth) = scenario.blinded(5, &BlindOptions::outside_the_catalogue()).unwrap();
+        let (_, truth) = blinded(&scenario, 5, &BlindOptions::outside_the_catalogue()).unwrap();
         assert!(truth.hidden.iter().all(|hidden| hidden.name.starts_with("x-")));
     }
 }

@@ -2,6 +2,11 @@
 
 use std::fmt::Display;
 
+/// The coldest and the hottest a chamber goes, °C.
+pub(crate) const CHAMBER_C: (f64, f64) = (-80.0, 180.0);
+/// The longest any part of a run may last: a year, s.
+pub(crate) const LONGEST_S: f64 = 366.0 * 86_400.0;
+
 /// A number that cannot be used: which one, what it is, and what it may be.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{field}` is {found}; it must be {expected}")]
