@@ -76,9 +76,12 @@ fn plain_cargo_builds_everything_but_the_image() {
 
 #[test]
 fn the_twin_knows_neither_the_protocol_nor_the_instrument() {
-    assert!(!sources("firmware-sim/src/twin").is_empty());
-    let offenders = files_with("firmware-sim/src/twin", &["protocol", "firmware_core", "virtual_", "crate::link"]);
-    assert!(offenders.is_empty(), "{offenders:#?}");
+    for folder in ["twin", "scenario", "simulation", "recording", "blind", "limit"] {
+        let folder = format!("firmware-sim/src/{folder}");
+        assert!(!sources(&folder).is_empty(), "{folder}");
+        let offenders = files_with(&folder, &["protocol", "firmware_core", "virtual_", "crate::link"]);
+        assert!(offenders.is_empty(), "{offenders:#?}");
+    }
 }
 
 #[test]
@@ -101,5 +104,8 @@ fn unsafe_code_is_forbidden_everywhere_but_on_the_board() {
         assert!(inherits || folder == "firmware", "{folder} must inherit the workspace's lints");
     }
     let offenders = files_with("firmware/src", &["unsafe"]);
-    assert!(offenders.iter().all(|offender| offender.contains("board")), "{offenders:#?}");
+    assert!(
+        offenders.iter().all(|offender| ["board.rs", "registers.rs"].iter().any(|file| offender.contains(file))),
+        "{offenders:#?}"
+    );
 }

@@ -1,7 +1,9 @@
 //! Microseconds since power-on, from the core's 24-bit timer.
 
-use crate::board::CLOCK_HZ;
-use crate::board::systick::{CSR, CVR, RVR};
+use crate::registers::systick::{CSR, CVR, RVR};
+
+/// The core's and all buses' clock.
+pub const CLOCK_HZ: u32 = 16_000_000;
 
 /// The timer counts every eighth tick of the processor's clock.
 const TICKS_PER_US: u32 = CLOCK_HZ / 8 / 1_000_000;

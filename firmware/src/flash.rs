@@ -4,8 +4,8 @@
 //! is one bank: while it erases, the processor waits for its next instruction, up to two seconds for a sector. Where
 //! there is no such flash (QEMU has a ROM), the bytes stay as they are, and whoever wrote them reads them back.
 
-use crate::board::flash::{ACR, CR, KEYR, SR};
 use crate::board::{SLOT_BYTES, read_slots, write_slots};
+use crate::registers::flash::{ACR, CR, KEYR, SR};
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
 
 const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];

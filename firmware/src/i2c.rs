@@ -3,8 +3,8 @@
 //! The sequences, reading one or two bytes included, are those of RM0090, section 27.3.3: what must
 //! follow a byte has to be announced before it arrives.
 
-use crate::board::CLOCK_HZ;
-use crate::board::i2c1::{CCR, CR1, CR2, DR, SR1, SR2, TRISE};
+use crate::clock::CLOCK_HZ;
+use crate::registers::i2c1::{CCR, CR1, CR2, DR, SR1, SR2, TRISE};
 use embedded_hal::i2c::{Error, ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation, SevenBitAddress};
 
 const CLOCK_MHZ: u32 = CLOCK_HZ / 1_000_000;

@@ -6,8 +6,11 @@ mod board;
 mod clock;
 mod flash;
 mod i2c;
+mod pins;
+mod registers;
 mod serial_line;
 mod spi;
+mod timer;
 
 use board::Board;
 #[cfg(feature = "log")]

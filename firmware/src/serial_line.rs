@@ -1,7 +1,7 @@
 //! The line to the host: 115 200 baud, 8 bits, no parity.
 
-use crate::board::CLOCK_HZ;
-use crate::board::usart1::{BRR, CR1, DR, SR};
+use crate::clock::CLOCK_HZ;
+use crate::registers::usart1::{BRR, CR1, DR, SR};
 
 const BAUD: u32 = 115_200;
 const ENABLE: u32 = 1 << 13;

@@ -1,7 +1,7 @@
 //! The bus to the counter: SPI mode 0, 1 Mbit/s, the counter alone on it.
 
-use crate::board::select_counter;
-use crate::board::spi1::{CR1, DR, SR};
+use crate::pins::select_counter;
+use crate::registers::spi1::{CR1, DR, SR};
 use embedded_hal::spi::{Error, ErrorKind, ErrorType, Operation, SpiDevice};
 
 const ENABLE: u32 = 1 << 6;
