@@ -5,7 +5,7 @@ use crate::metrics::allan::{AllanPoint, allan};
 use crate::metrics::full_temperature::{FullTemperature, full_temperature};
 use crate::metrics::stability::{Stability, stability};
 use crate::metrics::zero_bias::{ZeroBias, zero_bias};
-use crate::model::{Model, SlopeOf};
+use crate::model::Model;
 use crate::noise::{rms, sample_sigma_g};
 use crate::residuals::{ResidualError, Residuals, RunResiduals, arranged, residuals};
 use crate::sensitivity::{Sensitivity, sensitivity};
@@ -144,7 +144,7 @@ fn run_figures(model: &Model, run: &RunResiduals, held_out: bool) -> Option<RunF
 /// The slope of the model in the middle of its domain: what a raw figure in Hz is divided by.
 #[must_use]
 pub fn mean_slope_g_per_hz(model: &Model) -> f64 {
-    SlopeOf::new(model).in_the_middle()
+    model.slope().in_the_middle()
 }
 
 fn figures(run: &Run, outputs_g: &[f64], residuals_g: &[f64], outputs: &[f64]) -> Figures {

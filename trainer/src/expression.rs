@@ -1,30 +1,20 @@
 //! An effect that a user writes down: from the text to the program that a device runs, and back.
 
+mod error;
 mod parse;
 mod print;
 #[cfg(test)]
 mod tests;
+mod vocabulary;
 
+pub use error::ExpressionError;
 pub use print::print;
+pub use vocabulary::{FUNCTIONS, NAMES};
 
 use firmware_core::effect::{Parameter, Role};
-use firmware_core::program::{Input, One, Program, Reads, Step};
+use firmware_core::program::{Program, Reads, Step};
 use protocol::limits::MAX_PROGRAM;
-use thiserror::Error;
-
-/// What an expression may read besides the campaign's channels: name, meaning, what a program reads.
-pub const NAMES: [(&str, &str, Input); 7] = [
-    ("temperature_c", "thermometer, °C", Input::Temperature),
-    ("temperature_rate", "how fast it changes, °C/s, smoothed over the fitted tau_s", Input::Rate),
-    ("temperature_departure", "its distance from equilibrium with the fitted tau_s, °C", Input::Departure),
-    ("delta_f_hz", "frequency difference f1 − f2, Hz", Input::DeltaF),
-    ("level_g", "acceleration, g", Input::Level),
-    ("power_on_s", "time since power-on, s", Input::PowerOn),
-    ("age_days", "calendar age, days", Input::Age),
-];
-
-/// What an expression may apply to a value in parentheses. Squares are written `a^2`.
-pub const FUNCTIONS: [(&str, One); 3] = [("abs", One::Absolute), ("sqrt", One::SquareRoot), ("exp", One::Exponential)];
+use vocabulary::steps;
 
 /// An expression that is right in every respect for some list of channels.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,26 +22,6 @@ pub struct Expression {
     text: String,
     program: Program,
     code: heapless::Vec<u8, MAX_PROGRAM>,
-}
-
-/// Why a text is no expression.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("expression `{text}`, column {column}: found {found}, expected {expected}{}", hint(.nearest.as_deref()))]
-pub struct ExpressionError {
-    /// The whole text.
-    pub text: String,
-    /// Where in it, in letters from 1.
-    pub column: usize,
-    /// What stands there.
-    pub found: String,
-    /// What could stand there.
-    pub expected: String,
-    /// The known name that was perhaps meant.
-    pub nearest: Option<String>,
-}
-
-fn hint(nearest: Option<&str>) -> String {
-    nearest.map(|name| format!("; did you mean `{name}`?")).unwrap_or_default()
 }
 
 impl Expression {
@@ -113,14 +83,4 @@ impl Expression {
 pub fn alike(a: &str, b: &str) -> bool {
     let letters = |text: &str| text.split_whitespace().collect::<String>();
     letters(a) == letters(b)
-}
-
-/// The steps of a program, as far as they are known.
-fn steps(code: &[u8]) -> impl Iterator<Item = Step> {
-    let mut rest = code;
-    std::iter::from_fn(move || {
-        let (step, next) = Step::next(rest)?;
-        rest = next;
-        Some(step)
-    })
 }

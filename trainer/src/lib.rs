@@ -36,5 +36,6 @@ pub mod residuals;
 pub mod retrain;
 pub mod sensitivity;
 pub mod train;
+mod units;
 mod warnings;
 mod yardstick;

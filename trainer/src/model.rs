@@ -1,23 +1,27 @@
 //! A compensation model: a text file that a person can diff.
 
+mod arrays;
+mod bounds;
+mod error;
 #[cfg(test)]
 mod example;
 mod fitted_effect;
+mod parts;
 mod read;
 mod slope;
 
+pub(crate) use bounds::reach;
+pub use error::{DeviceLimit, ModelError};
 pub use fitted_effect::ModelEffect;
+pub use parts::{ModelDomain, ModelNetwork, ModelScaling, Units};
 pub use slope::SlopeOf;
 
 use crate::campaign::ReadAs;
-use crate::expression::ExpressionError;
 use firmware_core::{Compensator, LoadError, Network};
-use protocol::limits::{HIDDEN, MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_TERMS};
-use protocol::{Blob, Domain, Scaling, Term, Timing, Weights};
+use protocol::limits::{MAX_BLOB, MAX_CHANNELS, MAX_NAME, MAX_TERMS};
+use protocol::{Blob, Term, Timing, Weights};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::path::PathBuf;
-use thiserror::Error;
 
 /// Everything that training found, and how.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,180 +78,6 @@ pub struct Provenance {
     pub read_as: ReadAs,
 }
 
-/// Units of the measured quantities.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Units {
-    /// Of the signal, usually Hz.
-    pub signal: String,
-    /// Of the reference, usually g.
-    pub reference: String,
-}
-
-/// See [`Scaling`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ModelScaling {
-    /// Frequency difference at x = 0, µHz.
-    pub delta_f_zero_uhz: i64,
-    /// x per Hz.
-    pub delta_f_gain_per_hz: f32,
-    /// Temperature at t = 0, µ°C.
-    pub temperature_zero_uc: i32,
-    /// t per °C.
-    pub temperature_gain_per_c: f32,
-    /// Constant, x, t, x·t of the first-order instrument, g.
-    #[serde(deserialize_with = "read::exactly")]
-    pub line_g: [f32; 4],
-    /// g per unit of network output.
-    pub output_g: f32,
-}
-
-/// See [`Domain`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ModelDomain {
-    /// Lowest and highest frequency difference, µHz.
-    #[serde(deserialize_with = "read::exactly")]
-    pub delta_f_uhz: [i64; 2],
-    /// Lowest and highest temperature, µ°C.
-    #[serde(deserialize_with = "read::exactly")]
-    pub temperature_uc: [i32; 2],
-    /// Longest gap between samples across which memories are carried, µs; [`u32::MAX`] means any.
-    pub max_gap_us: u32,
-}
-
-/// The network's weights by unit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ModelNetwork {
-    /// [x, t] weights of each hidden unit.
-    #[serde(deserialize_with = "read::rows_exactly")]
-    pub input: [[f32; 2]; HIDDEN],
-    /// Threshold of each hidden unit.
-    #[serde(deserialize_with = "read::exactly")]
-    pub bias: [f32; HIDDEN],
-    /// Output weight of each hidden unit.
-    #[serde(deserialize_with = "read::exactly")]
-    pub output: [f32; HIDDEN],
-    /// Threshold of the output.
-    pub output_bias: f32,
-}
-
-/// Why there is no model.
-#[derive(Debug, Error)]
-pub enum ModelError {
-    /// The file can't be read.
-    #[error("{path}: {source}", path = path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// The text is no model.
-    #[error("{path}: not a model file: {source}", path = path.display())]
-    Syntax {
-        /// The file.
-        path: PathBuf,
-        /// Line and column are in its text.
-        source: Box<toml::de::Error>,
-    },
-    /// Another version wrote it.
-    #[error("{path}:{line}: model format {found}, this version reads {supported}", path = path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// The line.
-        line: usize,
-        /// Found.
-        found: i64,
-        /// Understood.
-        supported: u32,
-    },
-    /// A coefficient makes no physical sense.
-    #[error(
-        "{path}:{line}: effect `{effect}`: {parameter} = {value} is outside {low} to {high}",
-        path = path.display(), low = bounds.0, high = bounds.1
-    )]
-    Bound {
-        /// The file.
-        path: PathBuf,
-        /// The line.
-        line: usize,
-        /// The effect.
-        effect: String,
-        /// The coefficient.
-        parameter: &'static str,
-        /// Its value.
-        value: f64,
-        /// The least and the greatest value that it can have.
-        bounds: (f64, f64),
-    },
-    /// The text is a model that no device can run.
-    #[error("{path}: the model can't be used: {source}", path = path.display())]
-    Unusable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: Box<DeviceLimit>,
-    },
-    /// The model doesn't fit a device.
-    #[error("the model can't be put on a device: {0}")]
-    Device(#[from] DeviceLimit),
-}
-
-/// What a device can't hold.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum DeviceLimit {
-    /// An effect unknown to this version.
-    #[error("there is no effect named `{0}`; `tempco effects` lists them")]
-    UnknownEffect(String),
-    /// A coefficient is missing or surplus.
-    #[error("effect `{effect}` takes the coefficients {expected}, the model has {found}")]
-    Coefficients {
-        /// The effect.
-        effect: String,
-        /// In the model.
-        found: String,
-        /// Needed.
-        expected: String,
-    },
-    /// An effect's channel is not among the model's.
-    #[error("effect `{effect}` needs a channel that the model's `channels` do not list")]
-    Channel {
-        /// The effect.
-        effect: String,
-    },
-    /// An effect of the user's own doesn't say what it depends on, or another one does.
-    #[error("effect `{effect}` {wrong}")]
-    Expression {
-        /// The effect.
-        effect: String,
-        /// What is wrong.
-        wrong: &'static str,
-    },
-    /// An expression is wrong for the model's channels.
-    #[error(transparent)]
-    Text(#[from] ExpressionError),
-    /// Too many of something.
-    #[error("{what}: at most {most}")]
-    TooMany {
-        /// Of what.
-        what: &'static str,
-        /// The limit.
-        most: usize,
-    },
-    /// It was told a scale factor and reads with another one.
-    #[error(
-        "its slope is not the one of the scale factor that was stated when it was trained (`scale_factor_hz_per_g`)"
-    )]
-    ScaleFactor,
-    /// The core refuses it.
-    #[error("{0}")]
-    Load(LoadError),
-}
-
 impl Model {
     /// The format that this version reads and writes.
     pub const FORMAT: u32 = 1;
@@ -276,6 +106,12 @@ impl Model {
         Weights { input, bias, output, output_bias }
     }
 
+    /// What it makes of a change of its signal.
+    #[must_use]
+    pub fn slope(&self) -> SlopeOf<'_> {
+        SlopeOf::new(&self.scaling, &self.domain, &self.weights())
+    }
+
     /// The model as a device stores it.
     ///
     /// # Errors
@@ -295,7 +131,8 @@ impl Model {
             terms: self.wire_terms()?,
         };
         Compensator::load(&blob).map_err(DeviceLimit::Load)?;
-        if slope::agrees_with_what_was_stated(self) { Ok(blob) } else { Err(DeviceLimit::ScaleFactor) }
+        let stated = self.provenance.scale_factor_hz_per_g;
+        if self.slope().agrees_with(stated) { Ok(blob) } else { Err(DeviceLimit::ScaleFactor) }
     }
 
     /// The bytes of [`Model::to_blob`].
@@ -326,28 +163,6 @@ impl Model {
                 .map_err(|_| DeviceLimit::TooMany { what: "effects", most: MAX_TERMS })?;
         }
         Ok(terms)
-    }
-}
-
-impl ModelScaling {
-    /// The form that the core takes.
-    #[must_use]
-    pub const fn to_wire(self) -> Scaling {
-        Scaling {
-            delta_f_zero_uhz: self.delta_f_zero_uhz,
-            delta_f_gain_per_hz: self.delta_f_gain_per_hz,
-            temperature_zero_uc: self.temperature_zero_uc,
-            temperature_gain_per_c: self.temperature_gain_per_c,
-            line_g: self.line_g,
-            output_g: self.output_g,
-        }
-    }
-}
-
-impl ModelDomain {
-    const fn to_wire(self) -> Domain {
-        let ([f_low, f_high], [t_low, t_high]) = (self.delta_f_uhz, self.temperature_uc);
-        Domain { delta_f_uhz: (f_low, f_high), temperature_uc: (t_low, t_high) }
     }
 }
 

@@ -9,6 +9,7 @@ pub mod column;
 pub mod contender;
 pub mod evolution;
 pub mod judgement;
+pub mod lesson;
 pub mod paper;
 pub mod shortfall;
 pub mod sweep;

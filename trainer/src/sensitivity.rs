@@ -52,7 +52,7 @@ impl<'a> SlopeError<'a> {
         }
         let scale = InputScale::of(&campaign.runs)?;
         let data = merged(campaign.runs.iter().enumerate(), &scale);
-        Some(Self { slope: SlopeOf::new(model), measured: Polynomial::fit(&data), scale })
+        Some(Self { slope: model.slope(), measured: Polynomial::fit(&data), scale })
     }
 
     /// ppm of the measured slope, at a frequency difference in µHz and a temperature in µ°C.
@@ -68,7 +68,7 @@ impl<'a> SlopeError<'a> {
 
 /// The model's slope over its domain against `truth_g_per_hz(delta_f_uhz, temperature_uc)`.
 pub fn over_domain(model: &Model, truth_g_per_hz: impl Fn(f64, f64) -> f64) -> Sensitivity {
-    let slope = SlopeOf::new(model);
+    let slope = model.slope();
     over_grid(model, |f, t| (slope.at(f, t) / truth_g_per_hz(f, t) - 1.0) * 1e6)
 }
 

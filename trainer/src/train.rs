@@ -2,30 +2,27 @@
 
 mod backprop;
 mod baseline;
+mod error;
+mod search;
 mod second_order;
 mod settings;
 mod task;
 
 pub use crate::effect_choice::EffectChoice;
-pub use backprop::{Backprop, Swarm};
 pub use baseline::Baseline;
-pub use settings::{Anchoring, Method, TrainSettings};
+pub use error::TrainError;
+pub use search::Restart;
+pub use settings::{Anchoring, Backprop, Method, Swarm, TrainSettings};
 
 use crate::campaign::{Campaign, Run, Split};
 use crate::diagnose;
-use crate::effect_choice::EffectError;
-use crate::fit::effects::Coefficients;
-use crate::fit::firefly::FireflyError;
-use crate::fit::gradient_descent::DescentError;
 use crate::fit::polynomial::Polynomial;
-use crate::model::{DeviceLimit, Model};
+use crate::model::Model;
 use crate::progress::{Progress, Quiet};
 use crate::residuals::{Residuals, arranged, residuals};
 use crate::yardstick::Yardstick;
-use protocol::Weights;
+use search::Search;
 use task::Task;
-
-use thiserror::Error;
 
 /// A model and how it came about.
 #[derive(Clone, Debug)]
@@ -47,125 +44,26 @@ impl Trained {
     }
 }
 
-/// One training from one start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Restart {
-    /// RMS residual on the training data, g; before the best are trained on.
-    pub residual_g: f64,
-    /// Iterations made.
-    pub iterations: usize,
-    /// Whether it ended because nothing was left to gain, and not at a limit.
-    pub converged: bool,
-}
-
-/// Why there is no model.
-#[derive(Debug, Error)]
-pub enum TrainError {
-    /// Nothing to learn from.
-    #[error("no training runs are left after holding out; name fewer runs with --hold-out")]
-    NoTrainingRuns,
-    /// The restart count is zero.
-    #[error("at least one restart is needed")]
-    NoRestarts,
-    /// More restarts than anybody waits for.
-    #[error("{found} restarts; at most {most} are made, so ask for fewer with --restarts")]
-    TooManyRestarts {
-        /// Asked for.
-        found: usize,
-        /// Made at most.
-        most: usize,
-    },
-    /// A device has room for so many letters.
-    #[error("serial number `{found}` is longer than the {most} bytes that a device has room for")]
-    LongSerial {
-        /// The serial number.
-        found: String,
-        /// Bytes that fit.
-        most: usize,
-    },
-    /// A model file holds no larger one.
-    #[error("seed {found} is above {most}, the largest that a model file holds")]
-    LargeSeed {
-        /// The seed.
-        found: u64,
-        /// The largest.
-        most: u64,
-    },
-    /// Stopped before the first restart ended.
-    #[error("cancelled before the first restart ended")]
-    Cancelled,
-    /// An effect that this campaign or no device can have.
-    #[error(transparent)]
-    Effect(#[from] EffectError),
-    /// The paper's methods train a network alone.
-    #[error("effects can be fitted with the second-order method only")]
-    EffectsNeedSecondOrder,
-    /// A setting of the firefly swarm makes no sense.
-    #[error("firefly swarm: {0}")]
-    Swarm(#[from] FireflyError),
-    /// A setting of the gradient descent makes no sense.
-    #[error("gradient descent: {0}")]
-    Descent(#[from] DescentError),
-    /// No slope can be learnt of one level.
-    #[error(
-        "the reference is the same in every row of the training runs, so they don't say what a change of it does: state the scale factor with --scale-factor"
-    )]
-    NoScaleFactor,
-    /// What was found can't measure.
-    #[error("what the training found is no instrument: {0}")]
-    Unusable(DeviceLimit),
-    /// References beyond what a device can compute with.
-    #[error("references of this size are beyond the 32-bit numbers of a device: give them in another unit")]
-    Numbers,
-    /// No restart gave finite weights.
-    #[error("no restart converged to finite weights; look at the campaign with `tempco inspect`")]
-    NoFiniteWeights,
-}
-
-/// What a restart of any method ends with.
-struct Candidate {
-    restart: Restart,
-    cost: f64,
-    line_g: [f64; 4],
-    output_g: f64,
-    weights: Weights,
-    coefficients: Coefficients,
-}
-
-/// What a method found.
-struct Search {
-    restarts: Vec<Restart>,
-    best: Option<Candidate>,
-}
-
-impl Search {
-    /// The restart of least cost; the first of equals, so that the number of threads doesn't matter.
-    fn of(candidates: Vec<Candidate>) -> Self {
-        let restarts = candidates.iter().map(|candidate| candidate.restart).collect();
-        Self { restarts, best: candidates.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost)) }
-    }
-}
-
-fn measured(campaign: &Campaign, settings: &TrainSettings) -> Option<Yardstick> {
-    Yardstick::of_training(campaign, settings.scale_factor_hz_per_g, &settings.effects)
-}
-
-/// Settings in the units of the work.
-fn inside(settings: &TrainSettings, yardstick: &Yardstick) -> TrainSettings {
-    TrainSettings {
-        scale_factor_hz_per_g: settings.scale_factor_hz_per_g.map(|stated| yardstick.scale_factor_inside(stated)),
-        effects: yardstick.choices_inside(&settings.effects),
-        ..settings.clone()
-    }
-}
-
 /// Whether these settings could be trained, found out without training.
 ///
 /// # Errors
 /// [`TrainError`] says what is missing.
 pub fn check(campaign: &Campaign, split: &Split, settings: &TrainSettings) -> Result<(), TrainError> {
-    let yardstick = measured(campaign, settings).ok_or(TrainError::Numbers)?;
-    Task::new(&yardstick.campaign(campaign), split, &inside(settings, &yardstick), yardstick, &Quiet).map(|_| ())
+    let yardstick = yardstick_of(campaign, settings)?;
+    Task::new(&yardstick.campaign(campaign), split, &inside(&yardstick, settings), yardstick, &Quiet).map(|_| ())
+}
+
+fn yardstick_of(campaign: &Campaign, settings: &TrainSettings) -> Result<Yardstick, TrainError> {
+    Yardstick::of_training(campaign, settings.scale_factor_hz_per_g, &settings.effects).ok_or(TrainError::Numbers)
+}
+
+/// Settings in the units of the work.
+fn inside(yardstick: &Yardstick, settings: &TrainSettings) -> TrainSettings {
+    TrainSettings {
+        scale_factor_hz_per_g: settings.scale_factor_hz_per_g.map(|stated| yardstick.scale_factor_inside(stated)),
+        effects: yardstick.choices_inside(&settings.effects),
+        ..settings.clone()
+    }
 }
 
 /// Trains on the split's training runs.
@@ -180,16 +78,16 @@ pub fn train(
     settings: &TrainSettings,
     progress: &dyn Progress,
 ) -> Result<Trained, TrainError> {
-    let yardstick = measured(campaign, settings).ok_or(TrainError::Numbers)?;
-    let (scaled, own) = (yardstick.campaign(campaign), inside(settings, &yardstick));
-    let task = Task::new(&scaled, split, &own, yardstick, progress)?;
+    let yardstick = yardstick_of(campaign, settings)?;
+    let (scaled, stated) = (yardstick.campaign(campaign), inside(&yardstick, settings));
+    let task = Task::new(&scaled, split, &stated, yardstick, progress)?;
     if !settings.effects.is_empty() && settings.method != Method::SecondOrder {
         return Err(TrainError::EffectsNeedSecondOrder);
     }
     if settings.effects.iter().all(|choice| choice.start.is_some()) {
         return fitted(campaign, split, settings, task);
     }
-    let started = inside(&started_well(campaign, split, settings, progress)?, &yardstick);
+    let started = inside(&yardstick, &started_well(campaign, split, settings, progress)?);
     fitted(campaign, split, settings, Task::new(&scaled, split, &started, yardstick, progress)?)
 }
 

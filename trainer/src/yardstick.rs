@@ -5,15 +5,14 @@
 //! any other is scaled to it, and the answer is scaled back. Where the reference never varies, what the reading does
 //! over the campaign takes its place.
 
-mod units;
+pub(crate) use crate::units::STILL;
 
 use crate::campaign::{Campaign, Row};
 use crate::effect_choice::EffectChoice;
-use crate::model::Model;
-use firmware_core::effect::{self, About, Parameter};
-use firmware_core::{Network, Scale};
+use crate::model::{Model, reach};
+use crate::units::{DRIFT_G, ORDINARY_G, exponent, units_per_g};
+use firmware_core::effect::{self, About};
 use std::borrow::Cow;
-use units::{exponent, units_per_g};
 
 /// From the campaign's units to those of the work, and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,15 +24,6 @@ pub(crate) struct Yardstick {
     /// Whether the signal's sign is turned.
     turned: bool,
 }
-
-/// References that span less than this share of what the reading does are one and the same.
-pub(crate) const STILL: f64 = 0.01;
-/// What the reading of a sensor at rest is scaled to do, g: as such sensors do over temperature.
-const DRIFT_G: f64 = 0.01;
-/// A model tells the size of its campaign within this factor.
-const UNSURE: f64 = 2.0;
-/// A half span between these is left as it is, g.
-const ORDINARY_G: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 
 impl Yardstick {
     /// For a diagnosis of `model`; none if numbers aren't finite.
@@ -154,23 +144,10 @@ impl Yardstick {
         pairs.map(|(parameter, value)| value * factor.powi(exponent(about, parameter.name)) + 0.0).collect()
     }
 
-    /// What training multiplied references with to make `model`, as far as the model tells: the least and the greatest.
-    /// Its coefficients were bounded in the units of the work.
-    pub fn factors_of(model: &Model) -> [f64; 2] {
-        let reach = reach(model);
-        let about = |factor: f64| [factor / UNSURE, factor * UNSURE];
-        if model.provenance.scale_factor_hz_per_g.is_some() {
-            return about(DRIFT_G / reach);
-        }
-        match units_per_g(&model.units.reference) {
-            Some(per_g) if ORDINARY_G.contains(&(reach / per_g)) => [per_g.recip(); 2],
-            _ => about(reach.recip()),
-        }
-    }
-
-    /// A stated scale factor, Hz/g, in the units of the work.
+    /// A scale factor in the units of the work.
     pub fn scale_factor_inside(&self, stated: f64) -> f64 {
-        if self.turned { -stated / self.factor } else { stated / self.factor }
+        let sign = if self.turned { -1.0 } else { 1.0 };
+        sign * stated / self.factor
     }
 
     /// Choices whose starts are of the units of the work, in the campaign's.
@@ -191,20 +168,6 @@ impl Yardstick {
         };
         choices.iter().map(converted).collect()
     }
-}
-
-/// The bounds of a coefficient of `model` in the model's own units.
-pub(crate) fn bounds_of(model: &Model, about: &About, parameter: &Parameter) -> (f64, f64) {
-    let power = -exponent(about, parameter.name);
-    let widest = Yardstick::factors_of(model).map(|factor| factor.powi(power)).into_iter().fold(0.0, f64::max);
-    (parameter.low * widest, parameter.high * widest)
-}
-
-/// How far a model's reading goes to either side over what it was trained on.
-fn reach(model: &Model) -> f64 {
-    let (network, scale) = (Network::<f64>::new(&model.weights()), Scale::new(&model.scaling.to_wire()));
-    let reading = |x: f64| scale.reading_g(x, 0.0, network.evaluate(x, 0.0));
-    (reading(1.0) - reading(-1.0)).abs() / 2.0
 }
 
 fn signal(row: &Row) -> f64 {

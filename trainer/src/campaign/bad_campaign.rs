@@ -5,6 +5,7 @@
 use super::bad_input::{HEAD, told};
 use super::tests::Folder;
 use super::*;
+use std::path::PathBuf;
 
 const FILES: &str = r#"
 (none)

@@ -1,8 +1,8 @@
 //! The cells of one record as numbers, each refusal with its place.
 
-use super::columns::{Input, Source};
 use super::error::{CampaignError, Facts, Place, quoted, shortened};
 use super::limits::{self, MAX_NAME};
+use super::mapping::{Input, Source};
 use super::number::{Decimal, NotDecimal};
 use super::table::{Table, clean};
 use csv::ByteRecord;

@@ -1,8 +1,9 @@
 //! Whether a campaign can teach anything.
 
+use super::Campaign;
 use super::error::{CampaignError, Facts, Place};
 use super::number::micro_text;
-use super::{Campaign, Row};
+use super::run::Row;
 
 /// References within this part of their size are the same number, written differently.
 const SAME_REFERENCE: f64 = 1e-9;

@@ -1,5 +1,7 @@
 //! Why data was refused: a place, what was found there, what was expected. `help.rs` adds the way out.
 
+mod help;
+
 use protocol::limits::MAX_CHANNELS;
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -1,10 +1,11 @@
 //! How a foreign table is to be understood: from the caller, and from the `campaign.toml` beside the data.
 
-use super::columns::is_there;
 use super::error::{CampaignError, Facts, Place, quoted};
 use super::limits::MAX_MANIFEST;
+use super::mapping::is_there;
+use super::quantity::Quantity;
 use super::table::Table;
-use super::{Quantity, text};
+use super::text;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,6 +1,7 @@
 //! The hash that says which data a model came from.
 
-use super::{Quantity, Row, Run};
+use super::quantity::Quantity;
+use super::run::{Row, Run};
 use protocol::Sample;
 use sha2::{Digest, Sha256};
 

@@ -1,12 +1,14 @@
 //! Files and folders to one campaign.
 
+use super::Campaign;
 use super::columns::Layout;
 use super::error::{CampaignError, Facts, Place};
 use super::options::{ReadAs, ReadOptions};
+use super::quantity::Quantity;
 use super::rows::{Content, read_rows};
+use super::run::Run;
 use super::table::Table;
 use super::text::unreadable;
-use super::{Campaign, Quantity, Run};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};

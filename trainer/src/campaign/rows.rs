@@ -1,12 +1,13 @@
 //! The rows of one file, gathered into runs.
 
 use super::cells::{ANY, Cells};
-use super::columns::{Input, Layout, Signal};
+use super::columns::{Layout, Signal};
 use super::error::{CampaignError, Facts, Place, quoted};
 use super::limits::MAX_UPTIME_US;
+use super::mapping::Input;
 use super::number::{Decimal, micro_text};
+use super::run::{Row, Run, UNSTATED};
 use super::table::Table;
-use super::{Row, Run, UNSTATED};
 use csv::ByteRecord;
 use protocol::Sample;
 use protocol::limits::MAX_CHANNELS;

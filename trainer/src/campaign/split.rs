@@ -66,7 +66,7 @@ impl Campaign {
         match hold_out {
             HoldOut::None => Ok(self.divided(&[], Basis::Nothing)),
             HoldOut::Named(names) => {
-                let held_out = names.iter().map(|name| self.position(name)).collect::<Result<Vec<_>, _>>()?;
+                let held_out = names.iter().map(|name| self.run_index(name)).collect::<Result<Vec<_>, _>>()?;
                 let split = self.divided(&held_out, Basis::Named);
                 if split.training.is_empty() { Err(nothing_left(names)) } else { Ok(split) }
             }
@@ -83,7 +83,7 @@ impl Campaign {
         Split { training, held_out, basis }
     }
 
-    fn position(&self, name: &str) -> Result<usize, CampaignError> {
+    fn run_index(&self, name: &str) -> Result<usize, CampaignError> {
         self.runs.iter().position(|run| run.name == name).ok_or_else(|| {
             let names: Vec<String> = self.runs.iter().map(|run| run.name.clone()).collect();
             let facts = Facts::boxed(Place::campaign(), list("runs", &names), format!("a run {name} to hold out"));

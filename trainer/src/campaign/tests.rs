@@ -1,11 +1,13 @@
 //! Reading ordinary and foreign tables.
 
 use super::*;
+use protocol::Sample;
 use protocol::Status;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::fmt::Write;
 use std::path::Path;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Files in a folder of their own, which vanishes with this value.

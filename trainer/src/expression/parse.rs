@@ -8,7 +8,8 @@
 //! atom    = number | name | function ( sum ) | ( sum )
 //! ```
 
-use super::{ExpressionError, FUNCTIONS, NAMES};
+use super::error::ExpressionError;
+use super::vocabulary::{FUNCTIONS, NAMES};
 use crate::campaign::nearest;
 use firmware_core::program::{Input, One, Step, Two};
 use protocol::limits::MAX_PROGRAM;

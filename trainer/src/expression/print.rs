@@ -1,6 +1,6 @@
 //! From program to text, for calibrations whose model file is not at hand.
 
-use super::{FUNCTIONS, NAMES, steps};
+use super::vocabulary::{FUNCTIONS, NAMES, steps};
 use firmware_core::program::{Input, One, Step, Two};
 
 /// How firmly a text holds together.

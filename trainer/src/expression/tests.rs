@@ -1,4 +1,5 @@
 use super::*;
+use firmware_core::program::Input;
 
 fn channels() -> Vec<String> {
     ["supply_v", "pressure_pa"].map(str::to_owned).to_vec()

@@ -1,6 +1,6 @@
 //! An effect as the model file keeps it.
 
-use super::DeviceLimit;
+use super::error::DeviceLimit;
 use crate::expression::Expression;
 use firmware_core::effect::{self, Parameter};
 use protocol::Term;

@@ -1,10 +1,9 @@
 //! A model file, read strictly: what a person mistyped is told with its line, and never taken for something else.
 
-use super::{DeviceLimit, Model, ModelEffect, ModelError};
-use crate::yardstick::bounds_of;
+use super::bounds::bounds_of;
+use super::{Model, ModelEffect, ModelError};
 use firmware_core::effect::{self, Parameter, Role};
 use serde::Deserialize;
-use serde::de::{DeserializeOwned, Deserializer, Error};
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Spanned;
@@ -86,70 +85,6 @@ fn line_of(text: &str, effect: usize, parameter: &str) -> usize {
 
 fn line_at(text: &str, offset: usize) -> usize {
     text.bytes().take(offset).filter(|byte| *byte == b'\n').count() + 1
-}
-
-/// An array of exactly `N` entries. TOML's own reading of an array leaves surplus entries unread.
-pub(super) fn exactly<'de, D, T, const N: usize>(deserializer: D) -> Result<[T; N], D::Error>
-where
-    D: Deserializer<'de>,
-    T: DeserializeOwned,
-{
-    let entries = Vec::<T>::deserialize(deserializer)?;
-    entries.try_into().map_err(|entries: Vec<T>| wrong_length(entries.len(), N))
-}
-
-/// The same of rows of exactly `M` entries.
-pub(super) fn rows_exactly<'de, D, T, const N: usize, const M: usize>(deserializer: D) -> Result<[[T; M]; N], D::Error>
-where
-    D: Deserializer<'de>,
-    T: DeserializeOwned,
-{
-    let rows: [Vec<T>; N] = exactly(deserializer)?;
-    let row = |row: Vec<T>| row.try_into().map_err(|row: Vec<T>| wrong_length(row.len(), M));
-    let rows = rows.into_iter().map(row).collect::<Result<Vec<[T; M]>, D::Error>>()?;
-    rows.try_into().map_err(|rows: Vec<[T; M]>| wrong_length(rows.len(), N))
-}
-
-fn wrong_length<E: Error>(found: usize, expected: usize) -> E {
-    E::custom(format_args!("{found} entries, expected {expected}"))
-}
-
-impl ModelError {
-    /// The way out.
-    #[must_use]
-    pub fn help(&self) -> Option<String> {
-        Some(match self {
-            Self::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
-                "make one with `tempco train DATA -o model.toml`".to_owned()
-            }
-            Self::Io { .. } => return None,
-            Self::Syntax { .. } => {
-                "mend that line, or train the model again: `tempco train DATA -o model.toml`".to_owned()
-            }
-            Self::Format { .. } => {
-                "read it with the version that wrote it (`made_by` in the file), or train the model again with this one"
-                    .to_owned()
-            }
-            Self::Bound { effect, .. } => {
-                format!("`tempco effects {effect}` explains its parameters; `tempco add` finds them from measurements")
-            }
-            Self::Unusable { source, .. } => return source.help().map(str::to_owned),
-            Self::Device(source) => return source.help().map(str::to_owned),
-        })
-    }
-}
-
-impl DeviceLimit {
-    /// The way out, where there is one.
-    #[must_use]
-    pub fn help(&self) -> Option<&'static str> {
-        match self {
-            Self::ScaleFactor | Self::Load(firmware_core::LoadError::Slope { .. }) => Some(
-                "train the model again, with --scale-factor if the reference never varies; with levels in between if it does",
-            ),
-            _ => None,
-        }
-    }
 }
 
 #[cfg(test)]

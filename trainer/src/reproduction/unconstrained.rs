@@ -3,7 +3,7 @@
 //! The paper says gradient descent, which does not reach its tables within any patience; the second-order training of
 //! the common toolboxes does. It shows what such tables are worth: three levels are learnt by heart.
 
-use super::column::Lesson;
+use super::lesson::Lesson;
 use crate::campaign::Run;
 use crate::fit::dataset::{Datum, InputScale};
 use crate::fit::levenberg_marquardt::{Limits, Minimum, Problem, Quadratic, Termination, minimise};

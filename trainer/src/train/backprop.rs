@@ -5,10 +5,13 @@
 //! data as the default, each mean weighted by its samples, which changes the cost by nothing that
 //! gradient descent could resolve and makes 30 restarts affordable.
 
-use super::{Candidate, Restart, Search, Task, TrainError};
+use super::error::TrainError;
+use super::search::{Candidate, Restart, Search};
+use super::settings::{Backprop, Swarm};
+use super::task::Task;
 use crate::fit::dataset::Datum;
 use crate::fit::effects::Coefficients;
-use crate::fit::firefly::{self, Domain, ImprovedSettings, StandardSettings};
+use crate::fit::firefly::{self, Domain};
 use crate::fit::gradient_descent::{self, Termination};
 use crate::fit::random::stream;
 use crate::progress::RestartNews;
@@ -17,45 +20,6 @@ use protocol::Weights;
 use protocol::limits::{HIDDEN, WEIGHTS};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
-
-/// Settings of firefly-initialised backpropagation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Backprop {
-    /// What finds the first weights.
-    pub swarm: Swarm,
-    /// What improves them.
-    pub descent: gradient_descent::Settings,
-    /// First weights are sought within plus and minus this.
-    pub weight_bound: f64,
-}
-
-/// Which firefly algorithm.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Swarm {
-    /// Standard, eqs. (4) and (5).
-    Standard(StandardSettings),
-    /// Improved, eqs. (4) to (11).
-    Improved(ImprovedSettings),
-}
-
-impl Backprop {
-    /// FA-BP.
-    #[must_use]
-    pub fn standard() -> Self {
-        Self::of(Swarm::Standard(StandardSettings::recommended()))
-    }
-
-    /// IFA-BP.
-    #[must_use]
-    pub fn improved() -> Self {
-        Self::of(Swarm::Improved(ImprovedSettings::recommended()))
-    }
-
-    /// The paper prints neither learning rate nor number of passes nor the box of the weights.
-    fn of(swarm: Swarm) -> Self {
-        Self { swarm, descent: gradient_descent::Settings::bold_driver(0.1, 3000), weight_bound: 1.0 }
-    }
-}
 
 /// So many restarts are made at once, however many there are to be.
 const TOGETHER: usize = 64;

@@ -1,6 +1,8 @@
 //! The default: variable projection with Levenberg–Marquardt.
 
-use super::{Anchoring, Candidate, Restart, Search, Task};
+use super::search::{Candidate, Restart, Search};
+use super::settings::Anchoring;
+use super::task::Task;
 use crate::fit::dataset::Datum;
 use crate::fit::effects::{Coefficients, Frame, MovedRows};
 use crate::fit::levenberg_marquardt::{Limits, Termination, minimise};

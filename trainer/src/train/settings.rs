@@ -1,7 +1,10 @@
 //! What to train, and how.
 
-use super::TrainError;
-use super::backprop::{Backprop, Swarm};
+mod backprop;
+
+pub use backprop::{Backprop, Swarm};
+
+use super::error::TrainError;
 use crate::effect_choice::EffectChoice;
 use protocol::limits::MAX_NAME;
 

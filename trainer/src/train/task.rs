@@ -1,8 +1,9 @@
 //! What every method starts from, and how a method's best becomes a model.
 
 use super::baseline::Baseline;
+use super::error::TrainError;
+use super::search::Candidate;
 use super::settings::TrainSettings;
-use super::{Candidate, TrainError};
 use crate::campaign::{Campaign, Run, Split};
 use crate::effect_choice::choose;
 use crate::fit::dataset::{Datum, InputScale};

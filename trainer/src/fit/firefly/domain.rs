@@ -1,6 +1,6 @@
 //! The box in which fireflies live: checked once, here, so that no loop has to ask.
 
-use super::FireflyError;
+use super::error::FireflyError;
 use crate::fit::random;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::ops::RangeInclusive;

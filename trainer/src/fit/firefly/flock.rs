@@ -1,6 +1,6 @@
 //! The fireflies of a running search and their movement, eqs. (4), (5) and (11).
 
-use super::Domain;
+use super::domain::Domain;
 use super::settings::{Attraction, StepScale};
 use crate::fit::random;
 use rand_xoshiro::Xoshiro256PlusPlus;

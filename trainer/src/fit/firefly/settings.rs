@@ -2,7 +2,8 @@
 //!
 //! There is no `Default`: `paper()` is what is printed, `recommended()` what works, and the caller says which.
 
-use super::{Domain, FireflyError};
+use super::domain::Domain;
+use super::error::FireflyError;
 
 /// What r² means in eq. (4), β = β₀·exp(−γ r²).
 ///

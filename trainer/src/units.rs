@@ -2,8 +2,15 @@
 
 use firmware_core::effect::{About, Role};
 
+/// References that span less than this share of what the reading does are one and the same.
+pub(crate) const STILL: f64 = 0.01;
+/// What the reading of a sensor at rest is scaled to do, g: as such sensors do over temperature.
+pub(crate) const DRIFT_G: f64 = 0.01;
+/// A half span between these is left as it is, g.
+pub(crate) const ORDINARY_G: std::ops::RangeInclusive<f64> = 0.5..=2.0;
+
 /// How many of a unit are 1 g; none of what is no acceleration, or of an unknown name.
-pub(super) fn units_per_g(unit: &str) -> Option<f64> {
+pub(crate) fn units_per_g(unit: &str) -> Option<f64> {
     const METRES_PER_S2: f64 = 9.806_65;
     Some(match unit {
         "g" | "g0" | "gn" => 1.0,
@@ -20,7 +27,7 @@ pub(super) fn units_per_g(unit: &str) -> Option<f64> {
 
 /// With which power of a factor on the reference a coefficient of this name is multiplied, so that the effect does the
 /// same: what adds to the reading follows the reference, what is multiplied with powers of the level follows the rest.
-pub(super) fn exponent(about: &About, name: &str) -> i32 {
+pub(crate) fn exponent(about: &About, name: &str) -> i32 {
     let Some(parameter) = about.parameters.iter().find(|parameter| parameter.name == name) else { return 0 };
     match (about.name, name) {
         ("second-order", _) | ("mode-crossing", "shift_c_per_g") => -1,

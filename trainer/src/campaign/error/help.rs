@@ -1,6 +1,6 @@
 //! The way out of every refusal, in a sentence.
 
-use super::error::{CampaignError, Column, Facts, Missing};
+use super::{CampaignError, Column, Facts, Missing};
 
 /// What no table can do without: to ignore it would only change the error.
 const ESSENTIAL: [&str; 7] = ["time_s", "delta_f_hz", "f1_hz", "f2_hz", "temperature_c", "reference_g", "run"];
