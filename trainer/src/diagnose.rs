@@ -25,12 +25,13 @@ mod noise;
 mod problem;
 mod regression;
 mod selection;
+mod thresholds;
 mod verdict;
 
 pub use answer::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexplained, Unobservable, Verdict};
 pub use design::plan;
 pub use error::DiagnoseError;
-pub use verdict::LEAST_DELTA_BIC;
+pub use thresholds::LEAST_DELTA_BIC;
 
 use crate::campaign::Campaign;
 use crate::effect_choice::EffectChoice;

@@ -6,7 +6,7 @@ mod columns;
 mod groups;
 
 pub(super) use binning::across_g;
-pub(super) use cell::{Cell, SLOWEST, WANDER_TAUS_S};
+pub(super) use cell::{Cell, SLOWEST};
 pub(super) use columns::{Columns, difference, generous, joined, product, stacked, width};
 pub(super) use groups::Groups;
 

@@ -15,6 +15,7 @@ pub(super) use static_map::StaticMap;
 pub(super) use sum_channel::SumChannel;
 
 use super::cells::{Cells, Columns, difference};
+use crate::diagnose::thresholds::SILICON_G_PER_C;
 use contributions::contributions;
 use residuals::residuals_beside;
 
@@ -30,10 +31,6 @@ pub(super) struct Forward<'a> {
     /// The map alone.
     none: FixedEffects,
 }
-
-/// Slope of the sum of two forks of silicon near 40 kHz over temperature, 4.8 Hz/°C, where it was not measured; in
-/// accelerations that move the difference as far, as nobody knows what the signal's unit is.
-const SILICON_G_PER_C: f64 = 4.8 / 420.0;
 
 impl<'a> Forward<'a> {
     /// Of a map and what was measured.

@@ -25,6 +25,10 @@ use super::forward::{EffectSet, basis};
 use super::noise::{Component, InitialStates, NoiseModel};
 use super::problem::{NoiseModels, Problem, constrained};
 use super::regression::{Gls, Measured, Score};
+use crate::diagnose::thresholds::{
+    BENT, LEAST_EXTREMUM, LEAST_LACK_OF_FIT, LEAST_RECTIFIED, LEVEL_SCATTERS, MATTERS, STRUCTURE_TURNS,
+    STRUCTURES_JUDGED,
+};
 use dependence::{TEMPERATURE, followed};
 use nalgebra::DMatrix;
 use periodogram::periodic;
@@ -32,24 +36,6 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 pub(super) use structure::LackOfFit;
 use structure::{Alternative, Course, levels, rectified, running_extrema, structures};
-
-/// Evidence that a structure must have; there are a hundred to choose from.
-const ENOUGH: f64 = 30.0;
-/// And what is asked by itself: the kink, of a smooth instrument;
-const ENOUGH_OF_RECTIFIED: f64 = 10.0;
-/// what the hottest and coldest moments left, of which a few nodes must tell: their scatter had delta_bic of 11 and 12 in
-/// two rigs of a hundred.
-const ENOUGH_OF_EXTREMUM: f64 = 15.0;
-/// And its size, in units of the noise of a sample.
-const MATTERS: f64 = 0.5;
-/// So many are judged in full, by the noise as estimated and by a small one.
-const FINALISTS: usize = 3;
-/// How often amplitudes and noise are fitted in turn.
-const TURNS: usize = 2;
-/// Scatters from level to level that are tried beside a kink, in units of the noise of a sample.
-const SCATTERS: [f64; 9] = [0.0, 0.03, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4];
-/// A network that was trained on runs with an offset each follows their mean by this share of its uncertainty.
-const BENT: f64 = 0.5;
 
 /// Everything that gives away something missing beside these effects, the surest first.
 pub(super) fn lack_of_fit(
@@ -71,10 +57,10 @@ pub(super) fn lack_of_fit(
     let mut found = scene.followed(&alternatives, &map);
     found.extend(scene.poses(&map));
     found.extend(periodic(problem, known, noises));
-    found.retain(|one| one.delta_bic > ENOUGH);
+    found.retain(|one| one.delta_bic > LEAST_LACK_OF_FIT);
     let extrema = running_extrema(problem).into_par_iter().filter_map(|extremum| scene.judged(&extremum, &map));
-    found.extend(extrema.filter(|one| one.delta_bic > ENOUGH_OF_EXTREMUM).collect::<Vec<_>>());
-    found.extend(scene.rectified().filter(|one| one.delta_bic > ENOUGH_OF_RECTIFIED));
+    found.extend(extrema.filter(|one| one.delta_bic > LEAST_EXTREMUM).collect::<Vec<_>>());
+    found.extend(scene.rectified().filter(|one| one.delta_bic > LEAST_RECTIFIED));
     found.retain(|one| matters(problem, one));
     found.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     found
@@ -155,7 +141,7 @@ impl Scene<'_> {
         let mut order: Vec<(f64, &Alternative)> =
             scores.map(|(score, alternative)| (score.gain() - cost(alternative), alternative)).collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0));
-        order.into_iter().take(FINALISTS).map(|(_, alternative)| alternative).collect()
+        order.into_iter().take(STRUCTURES_JUDGED).map(|(_, alternative)| alternative).collect()
     }
 
     /// Fits amplitudes and noise in turn, where a map that is free may absorb what it can.
@@ -163,7 +149,7 @@ impl Scene<'_> {
         let (nuisance, columns) = (free.columns, alternative.course.whole(self.problem.cells()));
         let widened = stacked(nuisance, &generous(&columns, self.problem.sample_ug));
         let (mut with, mut fitted, mut size_ug) = (self.noise, self.residual.clone(), 0.0);
-        for _ in 0..TURNS {
+        for _ in 0..STRUCTURE_TURNS {
             let gls = self.gls(&with, self.residual, nuisance)?;
             let score = gls.score(&columns);
             let amplitudes = DMatrix::from_column_slice(width(&columns), 1, score.amplitudes()?.as_slice());
@@ -188,14 +174,14 @@ impl Scene<'_> {
         let course = kink.course.whole(self.problem.cells());
         // Only a smooth map may absorb it, not whatever a network may be bent to.
         let smooth = basis::of_smooth_map(&self.problem.forward.map, self.problem.cells());
-        let is_kink = |one: &LackOfFit| one.delta_bic > ENOUGH_OF_RECTIFIED && one.size_ug > self.bent_ug();
+        let is_kink = |one: &LackOfFit| one.delta_bic > LEAST_RECTIFIED && one.size_ug > self.bent_ug();
         let found = self.judged(&kink, &self.free(&smooth)?).filter(is_kink)?;
         let deviances = |scatter: &f64| {
             let levels: Columns = levels.iter().map(|run| run * (scatter * self.problem.sample_ug)).collect();
             let gls = self.gls(&self.noise, self.residual, &stacked(&smooth, &levels))?;
             Some([gls.deviance, gls.deviance - gls.score(&course).gain()])
         };
-        let tried: Vec<[f64; 2]> = SCATTERS.par_iter().filter_map(deviances).collect();
+        let tried: Vec<[f64; 2]> = LEVEL_SCATTERS.par_iter().filter_map(deviances).collect();
         let [without, with] = [0, 1].map(|side| tried.iter().map(|both| both[side]).fold(f64::INFINITY, f64::min));
         let delta_bic = without - with - self.problem.parameter_cost() * width(&course) as f64;
         Some(LackOfFit { delta_bic: found.delta_bic.min(delta_bic), ..found })

@@ -17,6 +17,6 @@ pub(super) use contender::{Contender, Found};
 pub(super) use cross_validation::held_out;
 pub(super) use forward_selection::missing;
 pub(super) use identifiability::{Screening, unobservable};
-pub(super) use predictive::{LOWERED, most_predictive};
+pub(super) use predictive::most_predictive;
 pub(super) use screening::screen;
 pub(super) use starts::starts;

@@ -12,9 +12,8 @@ use super::noise::reported;
 use super::problem::{
     GlsPair, NoiseModels, Problem, constrained, estimate, fit, fixed, free, in_model, initial_states, problem, refine,
 };
-use super::selection::{
-    Candidate, Found, LOWERED, Screening, held_out, missing, most_predictive, unobservable, with_channels,
-};
+use super::selection::{Candidate, Found, Screening, held_out, missing, most_predictive, unobservable, with_channels};
+use super::thresholds::{JOINT_STEPS, LEAST_DELTA_BIC, LOWERED, MOST_FINDINGS, SURELY_AT_BOUND, WEAK_DELTA_BIC};
 use crate::campaign::Campaign;
 use crate::model::Model;
 use crate::progress::Progress;
@@ -22,17 +21,6 @@ use crate::yardstick::Yardstick;
 use findings::findings;
 use found::Findings;
 use rest::{explainable, is_structured, unexplained_rest};
-
-/// ΔBIC that an effect must have to be named.
-pub const LEAST_DELTA_BIC: f64 = 25.0;
-/// Effects with less are compared with structures that no effect has before they are believed.
-const WEAK: f64 = 400.0;
-/// Most findings.
-const MOST_FINDINGS: usize = 4;
-/// ΔBIC of an effect beyond its physical bounds that tells of something unknown: formulas are not exact.
-const SURELY_AT_BOUND: f64 = 100.0;
-/// Steps of the last fit of all findings together.
-const LAST_STEPS: usize = 12;
 
 /// In the units of `yardstick`, as `campaign` is.
 pub(super) fn judge(
@@ -72,7 +60,7 @@ fn first_noises(problem: &Problem, set: &EffectSet) -> NoiseModels {
 /// The effects with their parameters fitted together.
 fn fitted(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -> Option<EffectSet> {
     let gls = GlsPair::new(problem, &problem.forward.residuals(set), &fixed(problem, set), noises)?;
-    Some(fit(problem, problem.forward.no_effects(), set, &gls, LAST_STEPS).0)
+    Some(fit(problem, problem.forward.no_effects(), set, &gls, JOINT_STEPS).0)
 }
 
 /// What stays the same while findings are looked for.
@@ -126,7 +114,7 @@ impl Driver<'_> {
         let is_beaten = |set: &EffectSet, noises: &NoiseModels| {
             largest_alternative(self.problem, set, noises) > next.winner.delta_bic
         };
-        next.winner.delta_bic < WEAK
+        next.winner.delta_bic < WEAK_DELTA_BIC
             && is_beaten(known, &next.noises)
             && is_beaten(&with, &self.noises_with(&with, next))
     }
@@ -169,7 +157,7 @@ impl Driver<'_> {
     fn refitted(&self, set: &EffectSet, noises: &NoiseModels) -> Option<(f64, EffectSet)> {
         let (problem, forward) = (self.problem, &self.problem.forward);
         let gls = GlsPair::new(problem, &forward.residuals(set), &fixed(problem, set), noises)?;
-        let (set, residuals) = fit(problem, forward.no_effects(), set, &gls, LAST_STEPS);
+        let (set, residuals) = fit(problem, forward.no_effects(), set, &gls, JOINT_STEPS);
         let deviance = GlsPair::new(problem, &residuals, &fixed(problem, &set), noises)?.deviance();
         Some((deviance, set))
     }
@@ -184,7 +172,8 @@ impl Driver<'_> {
     /// Where a large wander hides what likelihood could say, and it named nothing or something weak: the effect that
     /// halves the residual of what was left out, if there is one.
     fn predictive(&self, found: &Findings) -> Option<Findings> {
-        let weak = found.steps.first().is_none_or(|step| step.winner.delta_bic < WEAK) && found.formula.is_none();
+        let weak =
+            found.steps.first().is_none_or(|step| step.winner.delta_bic < WEAK_DELTA_BIC) && found.formula.is_none();
         if !weak || !is_structured(self.problem, &found.noises.delta) {
             return None;
         }

@@ -1,7 +1,8 @@
 //! From the rows of a run to its cells: means, times, and where the sensor or the chamber was moved.
 
-use super::cell::{Cell, WANDER_TAUS_S};
+use super::cell::Cell;
 use crate::campaign::Run;
+use crate::diagnose::thresholds::{NODE_STEP_C, REST_C_PER_S, SAME_POSITION_G, WANDER_TAUS_S};
 use crate::fit::dataset::{InputScale, mean};
 use std::ops::Range;
 
@@ -25,9 +26,6 @@ impl Across {
 pub fn across_g(level_g: f64) -> f64 {
     (1.0 - level_g * level_g).max(0.0).sqrt()
 }
-
-/// References closer than this are the same position, g.
-const SAME_POSITION_G: f64 = 1e-3;
 
 /// The cells of a run, each of these rows.
 pub fn cells_of(run: &Run, rows: Vec<Range<usize>>, scale: &InputScale, across: Across) -> Vec<Cell> {
@@ -62,11 +60,6 @@ pub fn cells_of(run: &Run, rows: Vec<Range<usize>>, scale: &InputScale, across: 
     mark_nodes(run, &mut found);
     found
 }
-
-/// Slower changes of temperature count as rest, °C/s.
-const REST_C_PER_S: f64 = 0.1 / 60.0;
-/// A change that nobody saw is a new node beyond this, °C.
-const NODE_STEP_C: f64 = 3.0;
 
 /// Where rest becomes motion, motion rest, or the temperature leaps.
 fn mark_nodes(run: &Run, cells: &mut [Cell]) {

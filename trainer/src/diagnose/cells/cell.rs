@@ -1,5 +1,6 @@
 //! One cell: the mean of neighbouring samples at one position.
 
+use crate::diagnose::thresholds::WANDER_TAUS_S;
 use std::ops::Range;
 
 /// One cell: the mean of neighbouring samples at one position.
@@ -52,7 +53,5 @@ impl Cell {
     }
 }
 
-/// Correlation times of the noise's wander, s: two octaves of flicker, and what takes hours.
-pub const WANDER_TAUS_S: [f64; 3] = [60.0, 600.0, 5000.0];
 /// The last of them.
 pub const SLOWEST: usize = 2;

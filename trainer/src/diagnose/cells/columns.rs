@@ -1,5 +1,6 @@
 //! Values of several columns at the cells: one matrix a run, a row a cell.
 
+use crate::diagnose::thresholds::GENEROUS;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -62,6 +63,3 @@ pub fn generous(columns: &Columns, unit: f64) -> Columns {
     let scaled = |run: &DMatrix<f64>| DMatrix::from_fn(run.nrows(), run.ncols(), |i, j| run[(i, j)] * scales[j]);
     columns.iter().map(scaled).collect()
 }
-
-/// Of the sample noise: as far as a known effect may move a cell.
-const GENEROUS: f64 = 1e3;

@@ -2,6 +2,7 @@
 //! nothing. Most candidates are such an effect at one place or another.
 
 use crate::campaign::Row;
+use crate::diagnose::thresholds::{SAME_GROUP_C, SAME_GROUP_G};
 use std::ops::Range;
 
 /// A cell's neighbours in groups, each with their mean temperature and level.
@@ -12,12 +13,6 @@ pub struct Groups {
     /// Of each group, its cell and its share of the cell's samples.
     pub places: Vec<(usize, f64)>,
 }
-
-/// Within a group temperatures differ by less, °C: the mean of an effect as narrow as half a degree differs from the
-/// effect at the mean by curvature · width²/24, which is 0.3 %.
-const SAME_C: f64 = 0.1;
-/// And levels by less, g.
-const SAME_G: f64 = 1e-3;
 
 impl Groups {
     /// Of these cells, each a range of `rows`.
@@ -39,7 +34,7 @@ impl Groups {
 
 fn is_same(first: &Row, row: &Row) -> bool {
     let away_c = f64::from(row.sample.temperature_uc.abs_diff(first.sample.temperature_uc)) * 1e-6;
-    away_c < SAME_C && (row.reference_g - first.reference_g).abs() < SAME_G
+    away_c < SAME_GROUP_C && (row.reference_g - first.reference_g).abs() < SAME_GROUP_G
 }
 
 fn mean(first: &Row, rows: &[Row]) -> Row {

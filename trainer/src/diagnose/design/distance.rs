@@ -4,6 +4,7 @@ use crate::diagnose::cells::{Columns, difference, joined, stacked, width};
 use crate::diagnose::forward::{EffectSet, Jacobian};
 use crate::diagnose::problem::{GlsPair, Problem};
 use crate::diagnose::selection::Candidate;
+use crate::diagnose::thresholds::MOST_SHAPES;
 use firmware_core::effect::SumResponse;
 use nalgebra::{Cholesky, DMatrix};
 use std::borrow::Cow;
@@ -24,8 +25,6 @@ struct Pair {
     sum: Option<Columns>,
 }
 
-/// More shapes than this are not tried one by one: the slopes at the fitted one must do.
-const MOST_SHAPES: usize = 40;
 /// Added to correlations before they are solved: rounding.
 const ROUNDING: f64 = 1e-9;
 

@@ -17,6 +17,7 @@ use crate::diagnose::problem::{
     GlsPair, NoiseModels, Problem, fixed, free, in_model, initial_states, problem, sum_noise, yardstick,
 };
 use crate::diagnose::selection::with_channels;
+use crate::diagnose::thresholds::{DECISIVE_SIGMA, LEAST_HOURS, LEAST_SIGMA2_PER_HOUR};
 use crate::fit::effects::Chosen;
 use crate::model::Model;
 use crate::progress::Progress;
@@ -112,12 +113,9 @@ impl Proposal {
     /// Whether it is worth making.
     #[must_use]
     pub fn is_useful(&self) -> bool {
-        self.sigma2_per_hour >= LEAST_GAIN
+        self.sigma2_per_hour >= LEAST_SIGMA2_PER_HOUR
     }
 }
-
-/// Recordings that gain less are no use, σ² per hour.
-const LEAST_GAIN: f64 = 0.05;
 
 /// Why there is no plan.
 #[derive(Debug, Error)]
@@ -135,10 +133,6 @@ pub enum PlanError {
     #[error(transparent)]
     Diagnose(#[from] DiagnoseError),
 }
-
-/// Hypotheses so far apart are told apart even with noise that is not quite as estimated: `D < 5` is
-/// indistinguishable, and the diagnosis estimates its noise anew for each hypothesis.
-const DECISIVE_SIGMA: f64 = 10.0;
 
 /// A hypothesis at its parameters, for computing.
 struct Hypothetical {
@@ -287,9 +281,6 @@ impl Start {
         self.pairs.iter().zip(squares).map(of).collect()
     }
 }
-
-/// No recording is shorter, hours.
-const LEAST_HOURS: f64 = 0.1;
 
 impl Hypothetical {
     /// The hypothesis by itself; none if its channel is not among these.

@@ -2,6 +2,7 @@
 
 use super::static_map::StaticMap;
 use crate::diagnose::cells::{Cell, Cells, Columns, RunCells};
+use crate::diagnose::thresholds::{MAP_POWERS, MAP_TANGENTS};
 use crate::fit::network::{HIDDEN_SIZE, OUTPUT_SIZE};
 use firmware_core::activation::{sigmoid, slope};
 use nalgebra::DMatrix;
@@ -9,21 +10,16 @@ use protocol::Weights;
 use protocol::limits::HIDDEN;
 use rayon::prelude::*;
 
-/// Highest powers of frequency difference and temperature, and of both together, by which a retrained map may differ.
-const POWERS: (usize, usize, usize) = (3, 6, 7);
-/// How far it may differ from such a polynomial, as a share of the network's own size.
-const TANGENTS: f64 = 0.1;
-
 /// How the reading can change by retraining, µg per expected change: polynomials and the network's tangents.
 pub fn of_retraining(map: &StaticMap, cells: &Cells) -> Columns {
     let (still, weights) = (cells.is_still(), map.weights());
     let row = |cell: &Cell| {
         if still {
             // The slope is stated, not learnt: retraining can change the course over temperature only.
-            return chebyshev(POWERS.1, cell.t);
+            return chebyshev(MAP_POWERS.1, cell.t);
         }
         let mut values = polynomials(cell.x, cell.t);
-        values.extend(tangents(&weights, cell).map(|value| value * TANGENTS));
+        values.extend(tangents(&weights, cell).map(|value| value * MAP_TANGENTS));
         values
     };
     departures(map, cells, row)
@@ -58,7 +54,7 @@ fn tangents(weights: &Weights, cell: &Cell) -> impl Iterator<Item = f64> {
 
 /// Chebyshev polynomials of both inputs.
 pub fn polynomials(x: f64, t: f64) -> Vec<f64> {
-    let (most_x, most_t, most) = POWERS;
+    let (most_x, most_t, most) = MAP_POWERS;
     let (in_x, in_t) = (chebyshev(most_x, x), chebyshev(most_t, t));
     let pairs = (0..=most_x).flat_map(|i| (0..=most_t.min(most - i)).map(move |j| (i, j)));
     pairs.map(|(i, j)| in_x[i] * in_t[j]).collect()

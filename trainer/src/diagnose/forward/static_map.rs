@@ -3,6 +3,7 @@
 use super::contributions::Contributions;
 use crate::campaign::Row;
 use crate::diagnose::cells::{Cell, Cells, Columns, RunCells};
+use crate::diagnose::thresholds::LEAST_SAMPLE_UG;
 use crate::fit::effects::Contribution;
 use crate::model::Model;
 use crate::noise::{rms, sample_sigma_g};
@@ -14,8 +15,6 @@ use rayon::prelude::*;
 
 /// g to µg.
 const UG: f64 = 1e6;
-/// Noise is never taken to be less, µg.
-const LEAST_UG: f64 = 1e-3;
 
 /// The static map: what a model computes without its effects.
 #[derive(Clone)]
@@ -90,7 +89,7 @@ impl StaticMap {
             run.run.rows.iter().map(of).collect()
         };
         let all: Vec<Vec<f64>> = cells.runs.iter().map(residuals).collect();
-        sample_sigma_g(cells.runs.iter().map(|run| run.run).zip(&all)).map(|sigma| sigma.max(LEAST_UG))
+        sample_sigma_g(cells.runs.iter().map(|run| run.run).zip(&all)).map(|sigma| sigma.max(LEAST_SAMPLE_UG))
     }
 
     /// RMS slope over temperature at a given frequency difference, µg/°C.

@@ -8,6 +8,7 @@ use super::basis::polynomials;
 use super::contributions::Contributions;
 use crate::campaign::Row;
 use crate::diagnose::cells::{Cell, Cells, Columns, RunCells};
+use crate::diagnose::thresholds::{GENEROUS, LEAST_DELTA_F};
 use crate::fit::dataset::InputScale;
 use crate::fit::effects::Contribution;
 use crate::noise::{normal_sigma, rms};
@@ -32,8 +33,6 @@ pub struct SumChannel {
 const MHZ: f64 = 1e3;
 /// Step in scaled temperature for the slope.
 const STEP: f64 = 1e-3;
-/// Freedom of the map in units of the residual's scatter: as good as any.
-const GENEROUS: f64 = 1e3;
 
 impl SumChannel {
     /// The sum channel, if every row has it.
@@ -115,9 +114,6 @@ fn clock_shares(scale: &InputScale, cells: &[Cell], contributions: &[Contributio
     };
     told.iter().scan(first, last).collect()
 }
-
-/// Below this, as a share of its half span, the difference is too small for a ratio.
-const LEAST_DELTA_F: f64 = 2e-3;
 
 fn sums(run: &RunCells) -> Option<Vec<f64>> {
     let of = |cell: &Cell| {

@@ -5,6 +5,7 @@ use crate::diagnose::cells::{Cell, Columns, RunCells};
 use crate::diagnose::forward::EffectSet;
 use crate::diagnose::problem::{NoiseModels, Problem, constrained};
 use crate::diagnose::regression::Gls;
+use crate::diagnose::thresholds::DEPENDENCE_DEGREE;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -16,8 +17,6 @@ struct Quantity {
 
 /// What every static calibration follows.
 pub const TEMPERATURE: &str = "temperature_c";
-/// Degree of the smooth functions, as polynomials of the quantity's rank.
-const DEGREE: usize = 6;
 
 /// How the residual follows each quantity, without and with the findings.
 pub fn dependences(
@@ -83,7 +82,7 @@ fn smooth(values: &[Vec<f64>]) -> Option<Columns> {
     let mut sorted: Vec<f64> = values.iter().flatten().copied().collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let distinct = sorted.chunk_by(|a, b| a == b).count();
-    let degree = DEGREE.min(distinct.checked_sub(1)?);
+    let degree = DEPENDENCE_DEGREE.min(distinct.checked_sub(1)?);
     if degree == 0 {
         return None;
     }

@@ -10,21 +10,12 @@ use crate::diagnose::forward::EffectSet;
 use crate::diagnose::noise::{Component, InitialStates, NoiseModel, Whitening};
 use crate::diagnose::problem::{NoiseModels, Problem, constrained};
 use crate::diagnose::regression::Gls;
+use crate::diagnose::thresholds::{
+    BINS_PER_PERIOD, CHANCE_SIGMA, LEAST_SEGMENT_PERIODS, LEAST_SEGMENT_SAMPLES, OVERSAMPLING, SEGMENT_PERIODS,
+};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-
-/// Periods of a segment.
-const PERIODS: f64 = 64.0;
-/// Frequencies per independent one.
-const OVERSAMPLING: f64 = 3.0;
-/// Bins to the shortest period of an octave.
-const BINS: f64 = 8.0;
-/// A segment must hold so many samples, and so many of the longest periods of its octave.
-const LEAST_SAMPLES: f64 = 8.0;
-const LEAST_PERIODS: f64 = 1.5;
-/// So many standard deviations above what chance gives on average are left to chance, before the best of all counts.
-const CHANCE: f64 = 4.0;
 
 /// The whitened residual of one run: times from its beginning, s, and values.
 struct Course {
@@ -54,7 +45,7 @@ struct Peak {
 
 impl Peak {
     fn excess(&self) -> f64 {
-        self.power - self.segments - CHANCE * (2.0 * self.segments).sqrt()
+        self.power - self.segments - CHANCE_SIGMA * (2.0 * self.segments).sqrt()
     }
 }
 
@@ -133,7 +124,7 @@ impl Course {
         let is_long = |bins: &Vec<Bin>| {
             let (Some(first), Some(last)) = (bins.first(), bins.last()) else { return false };
             let samples: f64 = bins.iter().map(|bin| bin.samples).sum();
-            last.time_s - first.time_s >= LEAST_PERIODS * period_s && samples >= LEAST_SAMPLES
+            last.time_s - first.time_s >= LEAST_SEGMENT_PERIODS * period_s && samples >= LEAST_SEGMENT_SAMPLES
         };
         found.into_iter().map(|(_, bins)| bins).filter(is_long).collect()
     }
@@ -151,7 +142,7 @@ impl Bin {
 fn octaves(courses: &[Course]) -> Vec<(usize, Peak)> {
     let longest_s = courses.iter().map(Course::seconds).fold(0.0, f64::max);
     let fastest_hz = courses.iter().map(|course| 0.5 / course.step_s).fold(0.0, f64::max);
-    let slowest_hz = LEAST_PERIODS / longest_s.max(f64::MIN_POSITIVE);
+    let slowest_hz = LEAST_SEGMENT_PERIODS / longest_s.max(f64::MIN_POSITIVE);
     let starts = std::iter::successors(Some(fastest_hz / 2.0), |start| Some(start / 2.0));
     starts.take_while(|start| *start > slowest_hz).filter_map(|start| octave(courses, start, longest_s)).collect()
 }
@@ -159,10 +150,11 @@ fn octaves(courses: &[Course]) -> Vec<(usize, Peak)> {
 /// From `start_hz` to twice that.
 fn octave(courses: &[Course], start_hz: f64, longest_s: f64) -> Option<(usize, Peak)> {
     let (longest_period_s, shortest_period_s) = (start_hz.recip(), 0.5 / start_hz);
-    let segment_s = (PERIODS * longest_period_s).min(longest_s * 1.01);
+    let segment_s = (SEGMENT_PERIODS * longest_period_s).min(longest_s * 1.01);
     let resolved = courses.iter().filter(|course| course.step_s <= 0.5 * shortest_period_s * 1.01);
-    let segments: Vec<Vec<Bin>> =
-        resolved.flat_map(|course| course.segments(segment_s, shortest_period_s / BINS, longest_period_s)).collect();
+    let segments: Vec<Vec<Bin>> = resolved
+        .flat_map(|course| course.segments(segment_s, shortest_period_s / BINS_PER_PERIOD, longest_period_s))
+        .collect();
     if segments.is_empty() {
         return None;
     }

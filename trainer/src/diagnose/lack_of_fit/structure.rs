@@ -2,6 +2,7 @@
 
 use crate::diagnose::cells::{Cell, Cells, Columns, RunCells, width};
 use crate::diagnose::problem::Problem;
+use crate::diagnose::thresholds::{LEAST_COURSE, LEAST_DAYS, LEVELS_PER_G, MOST_LEVELS};
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
 
@@ -58,15 +59,8 @@ impl Course {
     }
 }
 
-/// A run that covers less than this of the scaled temperature has no course over it.
-const LEAST_COURSE: f64 = 0.1;
-/// Levels are told apart to a thousandth of 1 g, or coarser where there would be more than so many.
-const PER_LEVEL: f64 = 1e3;
-const MOST_LEVELS: usize = 64;
 /// The solar day and the moon's half day, s.
 const DAYS_S: [f64; 2] = [86_400.0, 44_714.0];
-/// A swing by the calendar must have been followed this long in all, in periods.
-const LEAST_PERIODS: f64 = 1.5;
 
 /// Structures whose ΔBIC compares with that of effects: a kink's, weighed against a smooth instrument only, says
 /// too how far training was bent by the very effect that is missing.
@@ -81,7 +75,7 @@ fn days(problem: &Problem) -> Vec<Alternative> {
     let dated = problem.cells().runs.iter().all(|run| run.run.rows.iter().all(|row| row.sample.age_s.is_some()));
     let followed_s = |run: &RunCells| run.cells.last().map_or(0.0, |cell| cell.time_s);
     let followed_s: f64 = problem.cells().runs.iter().map(followed_s).sum();
-    let periods = DAYS_S.into_iter().filter(|period_s| dated && followed_s > LEAST_PERIODS * period_s);
+    let periods = DAYS_S.into_iter().filter(|period_s| dated && followed_s > LEAST_DAYS * period_s);
     let periodic = |period_s: f64, leans: bool| Alternative {
         depends_on: vec!["time_s".to_owned()],
         period_s: Some(period_s),
@@ -153,7 +147,7 @@ pub fn levels(problem: &Problem) -> Columns {
     let told_apart = |per_level: f64| -> Vec<i64> {
         problem.cells().iter().map(|cell| level(cell, per_level)).collect::<BTreeSet<_>>().into_iter().collect()
     };
-    let mut per_level = PER_LEVEL;
+    let mut per_level = LEVELS_PER_G;
     let mut distinct = told_apart(per_level);
     while distinct.len() > MOST_LEVELS {
         per_level /= 2.0;

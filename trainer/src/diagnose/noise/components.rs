@@ -2,6 +2,7 @@
 //! position to position and from node to node, and what wanders.
 
 use super::initial_state::PLACES;
+use crate::diagnose::thresholds::{FIRST_WALK, SMALL_WALK, WALK_S};
 use std::ops::{Index, IndexMut};
 
 /// A part of the noise.
@@ -85,13 +86,6 @@ pub struct NoiseModel {
     pub per_c: f64,
     sizes: [f64; COUNT],
 }
-
-/// A random walk is counted per √s; this many seconds make it comparable with the others, s.
-const WALK_S: f64 = 3600.0;
-/// A first guess of the walk, as a share of the noise of a sample.
-const FIRST_WALK: f64 = 0.3;
-/// A small random walk adds this share of the sample noise in a second.
-const SMALL_WALK: f64 = 0.01;
 
 impl Index<Component> for NoiseModel {
     type Output = f64;

@@ -240,7 +240,8 @@ mod tests {
     use super::super::initial_state::Shares;
     use super::*;
     use crate::campaign::Run;
-    use crate::diagnose::cells::{Cell, Groups, RunCells, SLOWEST, WANDER_TAUS_S};
+    use crate::diagnose::cells::{Cell, Groups, RunCells, SLOWEST};
+    use crate::diagnose::thresholds::WANDER_TAUS_S;
     use nalgebra::DVector;
     use std::path::PathBuf;
 

@@ -5,6 +5,7 @@ use super::initial_state::InitialStates;
 use super::kalman::{self, Pass, State};
 use super::observation::{Kind, Observed};
 use crate::diagnose::cells::{Cells, Columns, SLOWEST};
+use crate::diagnose::thresholds::LEAST_STATE;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -72,7 +73,7 @@ fn states(noise: &NoiseModel, initial: &InitialStates) -> Vec<State> {
         Kind::Walk => (kind, noise[component] * 60.0),
         _ => (kind, noise[component]),
     };
-    let matters = |&(_, sigma): &(Kind, f64)| sigma > noise.sample * NOTHING;
+    let matters = |&(_, sigma): &(Kind, f64)| sigma > noise.sample * LEAST_STATE;
     let state = |(kind, sigma): (Kind, f64)| State { kind, variance: sigma * sigma };
     let walk = |state: State| match state.kind {
         Kind::Walk => State { variance: state.variance / 3600.0, ..state },
@@ -80,6 +81,3 @@ fn states(noise: &NoiseModel, initial: &InitialStates) -> Vec<State> {
     };
     all.into_iter().chain(began).map(sized).filter(matters).map(state).map(walk).collect()
 }
-
-/// Below this share of the sample noise a part is left out.
-const NOTHING: f64 = 0.021;

@@ -2,7 +2,8 @@
 
 use super::components::NoiseModel;
 use super::initial_state::{NOTHING, Shares};
-use crate::diagnose::cells::{Cell, RunCells, SLOWEST, WANDER_TAUS_S};
+use crate::diagnose::cells::{Cell, RunCells, SLOWEST};
+use crate::diagnose::thresholds::WANDER_TAUS_S;
 
 /// How a part of the noise goes on from cell to cell, and how it shows.
 #[derive(Clone, Copy)]
@@ -17,7 +18,7 @@ pub enum Kind {
     Pose,
     /// New at every soaked node.
     Node,
-    /// Fades with one of the times of `cells::WANDER_TAUS_S`.
+    /// Fades with one of the times of `WANDER_TAUS_S`.
     Fading(usize),
     /// Fades within hours, per g across the input axis.
     Turning,

@@ -5,10 +5,9 @@ use super::Problem;
 use super::gls_pair::GlsPair;
 use crate::diagnose::cells::stacked;
 use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects};
+use crate::diagnose::thresholds::LEAST_STEP_GAIN;
 use nalgebra::{DMatrix, DVector};
 
-/// A fit ends when a step gains less than this in −2 log likelihood.
-const LEAST_GAIN: f64 = 0.02;
 const MOST_DAMPING: f64 = 1e6;
 
 /// What stays the same during a fit.
@@ -40,7 +39,7 @@ pub fn fit(
     for _ in 0..steps {
         let before = best.squares;
         best = fit.improved(best, &mut damping);
-        if before - best.squares < LEAST_GAIN {
+        if before - best.squares < LEAST_STEP_GAIN {
             break;
         }
     }

@@ -5,6 +5,7 @@ use super::noise_models::NoiseModels;
 use crate::diagnose::cells::{Columns, generous, joined, stacked};
 use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects, Jacobian};
 use crate::diagnose::regression::Gls;
+use crate::diagnose::thresholds::FREE_IN_SUM;
 use nalgebra::DMatrix;
 
 /// Columns whose amplitudes are nuisances: a row a cell, a column a direction; of about one where they are expected.
@@ -16,13 +17,11 @@ pub struct Nuisance {
     pub sum: Option<Columns>,
 }
 
-/// Amplitude in the sum of an effect that leaves it free.
-const FREE: f64 = 1e2;
-
 /// What may adapt around these effects, their own parameters fixed.
 pub fn fixed(problem: &Problem, set: &EffectSet) -> Nuisance {
-    let scaled =
-        |one: &EffectSet| -> Columns { problem.forward.alone_ug(one).into_iter().map(|run| run * FREE).collect() };
+    let scaled = |one: &EffectSet| -> Columns {
+        problem.forward.alone_ug(one).into_iter().map(|run| run * FREE_IN_SUM).collect()
+    };
     let sum = problem.forward.sum.as_ref().map(|channel| {
         let columns: Vec<Columns> = set.sum_free().each().map(|one| scaled(&one)).collect();
         if columns.is_empty() { channel.nuisance.clone() } else { stacked(&channel.nuisance, &joined(&columns)) }

@@ -12,6 +12,7 @@
 
 use crate::diagnose::cells::{Cells, Columns, joined, product, width};
 use crate::diagnose::noise::{InitialStates, NoiseModel, Whitening};
+use crate::diagnose::thresholds::LEAST_INFORMATION;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -229,9 +230,6 @@ fn places(candidates: &[&Columns]) -> Vec<Range<usize>> {
 fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {
     2.0 * factor.l_dirty().diagonal().iter().map(|value| value.ln()).sum::<f64>()
 }
-
-/// Directions of the nuisance about which the data say less than this, in units of what is expected beforehand.
-const LEAST_INFORMATION: f64 = 1e-3;
 
 /// The same nuisance in fewer columns: directions that the data say nothing about are left out.
 pub fn compressed(cells: &Cells, noise: &NoiseModel, nuisance: &Columns) -> Columns {

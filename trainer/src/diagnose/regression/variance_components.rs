@@ -4,16 +4,7 @@
 use super::gls::Gls;
 use crate::diagnose::cells::{Cells, Columns};
 use crate::diagnose::noise::{Component, InitialStates, NoiseModel, deviance};
-
-/// Parts below this share of the sample noise make no difference.
-const LEAST: f64 = 0.02;
-const MOST: f64 = 1e5;
-/// Factors by which a part is changed.
-const STEPS: [f64; 4] = [8.0, 3.0, 1.6, 1.2];
-/// A gain in −2 log likelihood that is not worth another round.
-const ENOUGH: f64 = 0.1;
-/// How often map and noise are fitted in turn when nothing is known.
-const TURNS: usize = 2;
+use crate::diagnose::thresholds::{COMPONENT_STEPS, FIRST_NOISE_TURNS, LEAST_COMPONENT, LEAST_ROUND, MOST_COMPONENT};
 
 /// What the noise is estimated from: a residual and what may absorb it, in cells of which is known how much of the initial
 /// states is left.
@@ -33,7 +24,7 @@ impl Measured<'_> {
     /// nothing is known (`coarse`).
     pub fn noise(&self, start: NoiseModel, coarse: bool) -> NoiseModel {
         let mut noise = start;
-        for turn in 0..if coarse { TURNS } else { 1 } {
+        for turn in 0..if coarse { FIRST_NOISE_TURNS } else { 1 } {
             let Some(gls) = self.gls(&noise) else { return noise };
             let adapted = gls.adapted(self.residual, self.nuisance);
             noise = self.search(&adapted, noise, if coarse && turn == 0 { 0 } else { 1 });
@@ -54,13 +45,13 @@ impl Measured<'_> {
         };
         let components: Vec<Component> = Component::ALL.into_iter().filter(is_there).collect();
         let mut best = (start, deviance(&start));
-        for step in &STEPS[from..] {
+        for step in &COMPONENT_STEPS[from..] {
             loop {
                 let before = best.1;
                 for component in &components {
                     best = improved(best, *component, *step, &deviance);
                 }
-                if before - best.1 < ENOUGH.max(*step) {
+                if before - best.1 < LEAST_ROUND.max(*step) {
                     break;
                 }
             }
@@ -99,6 +90,6 @@ fn changed(noise: &NoiseModel, component: Component, factor: f64) -> Option<Nois
     }
     let mut next = *noise;
     let unit = component.unit(noise.sample);
-    next[component] = (size * factor).clamp(LEAST * unit, MOST * unit);
+    next[component] = (size * factor).clamp(LEAST_COMPONENT * unit, MOST_COMPONENT * unit);
     (next[component] != size).then_some(next)
 }

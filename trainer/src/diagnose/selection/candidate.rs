@@ -1,9 +1,10 @@
 //! Every effect that might be missing, at every shape worth trying.
 
-use super::shapes::{MOST_SHIFTS, PLACE_STEP, SHIFTS, shapes, unit, width_c};
+use super::shapes::{shapes, unit, width_c};
 use crate::diagnose::cells::{Columns, difference, joined};
 use crate::diagnose::forward::{CellResiduals, EffectSet, amplitudes};
 use crate::diagnose::problem::Problem;
+use crate::diagnose::thresholds::{LEAST_LEVEL_G, MOST_SHIFTS, PLACE_STEP, SHIFTS};
 use crate::fit::effects::Chosen;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -34,9 +35,6 @@ const KEPT_BYTES: usize = 256 << 20;
 /// What a matrix takes beside its numbers: itself, and what the allocator needs.
 const MATRIX_BYTES: usize = size_of::<DMatrix<f64>>() + 16;
 
-/// The least level that a place is moved by, g.
-const LEAST_G: f64 = 0.1;
-
 impl Candidate {
     /// All of them. `shown` says which effects this campaign can show.
     pub fn all(problem: &Problem, shown: &[Chosen]) -> Vec<Self> {
@@ -64,7 +62,7 @@ impl Candidate {
         let Some(shift) = effect.about.parameters.iter().position(|about| about.unit == "°C/g") else {
             return Vec::new();
         };
-        let most_g = problem.cells().iter().map(|cell| cell.level_g.abs()).fold(LEAST_G, f64::max);
+        let most_g = problem.cells().iter().map(|cell| cell.level_g.abs()).fold(LEAST_LEVEL_G, f64::max);
         let most_c_per_g = SHIFTS.into_iter().fold(0.0, f64::max) * problem.forward.shift_c_per_g();
         let step_c_per_g = width_c(effect.about, values) * PLACE_STEP / most_g;
         let count = (most_c_per_g / step_c_per_g).ceil().clamp(1.0, MOST_SHIFTS);

@@ -2,6 +2,7 @@
 
 use crate::diagnose::forward::{EffectSet, is_placed, name_of};
 use crate::diagnose::problem::NoiseModels;
+use crate::diagnose::thresholds::AT_BOUND;
 use crate::fit::effects::Chosen;
 use firmware_core::effect::Role;
 use std::ops::RangeInclusive;
@@ -19,8 +20,6 @@ pub struct Contender {
     pub noises: Option<NoiseModels>,
 }
 
-/// A shape this close to its bound, as a ratio, was stopped by it.
-const AT_BOUND: f64 = 1.05;
 impl Contender {
     /// Whether both are the same effect.
     pub fn is_same_effect(&self, other: &Self) -> bool {

@@ -7,6 +7,7 @@ use crate::diagnose::cells::{Cell, Columns, RunCells, product, stacked};
 use crate::diagnose::forward::EffectSet;
 use crate::diagnose::noise::{InitialStates, Shares, Whitening};
 use crate::diagnose::problem::{NoiseModels, Problem, fixed};
+use crate::diagnose::thresholds::{FEW_RUNS, LEAST_OF_ITS_OWN, PARTS_OF_FEW};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::ops::Range;
 
@@ -117,13 +118,6 @@ fn squares_of_its_own(cells: &[Cell], residual: &DMatrix<f64>, begun: &[Vec<f64>
     }
     basis.iter().map(|direction| direction.dot(&residual).powi(2)).sum()
 }
-
-/// What varies by less than this share of its square is part of what came before.
-const LEAST_OF_ITS_OWN: f64 = 1e-4;
-
-/// With fewer runs, parts of them are left out; so many parts in all.
-const FEW_RUNS: usize = 3;
-const PARTS_OF_FEW: usize = 12;
 
 #[cfg(test)]
 mod tests {

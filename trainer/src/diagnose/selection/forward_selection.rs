@@ -9,15 +9,9 @@ use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects};
 use crate::diagnose::problem::{
     GlsPair, NoiseModels, Nuisance, Problem, constrained, fit, initial_states, refine, sum_noise, widened,
 };
+use crate::diagnose::thresholds::{CONTENDER_STEPS, CONTENDER_TURNS, FINALISTS};
 use firmware_core::effect::SumResponse;
 use rayon::prelude::*;
-
-/// So many effects go from the screening into the final, as judged by the noise as estimated and by a small one.
-const FINALISTS: [usize; 2] = [4, 3];
-/// How often a finalist's parameters and noise are fitted in turn.
-const TURNS: usize = 2;
-/// Steps of each fit of the parameters.
-const STEPS: usize = 4;
 
 /// Everything that stays the same while contenders are compared.
 struct Scene<'a> {
@@ -86,10 +80,10 @@ impl<'a> Scene<'a> {
         let initial = |own: &EffectSet| initial_states(self.problem, &self.known.and(own));
         let mut own = contender.alone();
         let mut noises = self.noises.beside(&initial(&own));
-        for _ in 0..TURNS {
+        for _ in 0..CONTENDER_TURNS {
             let gls = self.gls(&self.residuals, &noises)?;
             let mut residuals;
-            (own, residuals) = fit(self.problem, &self.fixed, &own, &gls, STEPS);
+            (own, residuals) = fit(self.problem, &self.fixed, &own, &gls, CONTENDER_STEPS);
             let mut nuisance = widened(self.problem, &self.nuisance, &self.fixed, &own, &residuals);
             if !predicted {
                 // The sum is as it was; its noise is known.
@@ -100,7 +94,8 @@ impl<'a> Scene<'a> {
         }
         noises = noises.beside(&initial(&own));
         // The noise was fitted with the parameters free: they settle under what it has become.
-        let (own, residuals) = fit(self.problem, &self.fixed, &own, &self.gls(&self.residuals, &noises)?, STEPS);
+        let (own, residuals) =
+            fit(self.problem, &self.fixed, &own, &self.gls(&self.residuals, &noises)?, CONTENDER_STEPS);
         if predicted {
             // Difference and sum were free to ask for different sizes: what one size leaves is noise.
             noises = refine(self.problem, &residuals, &self.nuisance, &noises);
@@ -131,7 +126,7 @@ impl<'a> Scene<'a> {
         let bias = difference(&residuals.delta, &self.residuals.delta);
         let bound = most * self.problem.forward.mhz_per_ug();
         let (mut noises, mut freed) = (noises.clone(), residuals.clone());
-        for _ in 0..TURNS {
+        for _ in 0..CONTENDER_TURNS {
             let gls = self.gls(residuals, &noises)?.sum?;
             let score = gls.score(&bias);
             let share = score.amplitudes()?[0].clamp(-bound, bound);

@@ -5,6 +5,7 @@ use crate::campaign::Campaign;
 use crate::diagnose::answer::Unobservable;
 use crate::diagnose::forward::EffectSet;
 use crate::diagnose::problem::{GlsPair, NoiseModels, Problem, constrained};
+use crate::diagnose::thresholds::{LEAST_LEFT, NOTHING_UG};
 use firmware_core::effect::{self, About};
 
 /// Candidates by whether the campaign can show them.
@@ -14,11 +15,6 @@ pub struct Screening {
     /// Names of effects with no visible candidate, and the reason.
     hidden: Vec<(&'static str, String)>,
 }
-
-/// Less of an effect than this, as a share of its amplitude, is left when the instrument has been retrained.
-const LEAST_LEFT: f64 = 0.03;
-/// An effect's column below this is no excitation at all, µg RMS at a thousandth of its greatest amplitude.
-const NOTHING_UG: f64 = 1e-9;
 
 impl Screening {
     /// Sorts the candidates; `None` if the noise makes no sense.

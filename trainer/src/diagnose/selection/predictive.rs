@@ -7,20 +7,8 @@ use super::screening::screen;
 use crate::diagnose::forward::EffectSet;
 use crate::diagnose::problem::{GlsPair, NoiseModels, Problem, constrained, fit, initial_states};
 use crate::diagnose::regression::Measured;
+use crate::diagnose::thresholds::{HALVED, LOWERED, PREDICTED, PREDICTIVE_ASKED, PREDICTIVE_STEPS, WORSE};
 use rayon::prelude::*;
-
-/// So many effects are asked what they predict.
-const ASKED: usize = 8;
-/// Steps of the fit of each.
-const STEPS: usize = 8;
-/// What was left out must be read with half the error, or no more than a resemblance was found.
-const HALVED: f64 = 0.5;
-/// Or what is predictable of it must be lowered to this share.
-pub const LOWERED: f64 = 0.9;
-/// Nor must all of it and what is predictable both grow to this.
-const WORSE: f64 = 1.1;
-/// Share of the gain in likelihood that must hold for runs that were left out.
-const PREDICTED: f64 = 0.25;
 
 /// Whether runs that were left out are explained better with the effect than without, or are at least read with half
 /// the error, or with clearly less of what is predictable: the residual alone, as the sum of the frequencies
@@ -59,10 +47,10 @@ pub fn most_predictive(
     screened.retain(|contender| contender.effect.expression.is_none());
     screened.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     let mut screened = best_of_each(screened);
-    screened.truncate(ASKED);
+    screened.truncate(PREDICTIVE_ASKED);
     let before = held_out(problem, known, &small);
     let tried = screened.into_par_iter().map(|contender| {
-        let (own, _) = fit(problem, &fixed, &contender.alone(), &gls, STEPS);
+        let (own, _) = fit(problem, &fixed, &contender.alone(), &gls, PREDICTIVE_STEPS);
         let values = own.coefficients.values.concat();
         let after = held_out(problem, &known.with(&contender.effect, &values), &small);
         let ratio = after.structure_ug() / before.structure_ug();

@@ -2,28 +2,15 @@
 
 use crate::diagnose::forward::is_placed;
 use crate::diagnose::problem::Problem;
+use crate::diagnose::thresholds::{
+    AMPLITUDE_UNIT, FORMULA_UNIT_G, PLACE_STEP, PLACE_STEP_C, SHAPES, SHAPES_OF_SEVERAL, SHIFTS, WIDTHS_C,
+};
 use crate::fit::effects::Chosen;
 use firmware_core::effect::{About, Parameter, Role};
 
-/// Amplitudes are tried at this share of their bound: formulas are linear in them.
-const UNIT: f64 = 1e-3;
-/// And those of formulas at this, g per unit.
-const FORMULA_UNIT: f64 = 1e-6;
-/// Shapes along one logarithmic axis.
-const SHAPES: usize = 14;
-/// Shapes along each of several axes.
-const SHAPES_OF_SEVERAL: usize = 6;
-/// How far 1 g moves a place, as shares of how far it moves one of the forks: less or more where what the fork meets follows
-/// the temperature too.
-pub const SHIFTS: [f64; 5] = [-1.7, -1.0, 0.0, 1.0, 1.7];
-/// Most shifts to either side that are compared at one place.
-pub const MOST_SHIFTS: f64 = 60.0;
-/// Widths of an effect that sits at a place, °C.
-const WIDTHS: [f64; 3] = [0.7, 2.0, 6.0];
-
 /// The size at which the amplitude at `index` is tried.
 pub fn unit(effect: &Chosen, index: usize) -> f64 {
-    if effect.expression.is_some() { FORMULA_UNIT } else { effect.about.parameters[index].high * UNIT }
+    if effect.expression.is_some() { FORMULA_UNIT_G } else { effect.about.parameters[index].high * AMPLITUDE_UNIT }
 }
 
 /// Coefficients of an effect at every shape worth trying, every amplitude at its unit.
@@ -39,7 +26,7 @@ pub fn shapes(effect: &Chosen, problem: &Problem) -> Vec<Vec<f64>> {
                 vec![about.start]
             }
             Role::Origin => vec![effect.origin],
-            Role::Shape if placed => WIDTHS.to_vec(),
+            Role::Shape if placed => WIDTHS_C.to_vec(),
             Role::Shape => logarithmic(about, if searched > 1 { SHAPES_OF_SEVERAL } else { SHAPES }),
             Role::Location if about.unit == "°C" => places(problem, width_c(effect.about, before)),
             Role::Location => SHIFTS.map(|share| (share * fork_c_per_g).clamp(about.low, about.high)).into(),
@@ -72,7 +59,3 @@ pub fn width_c(about: &About, values: &[f64]) -> f64 {
     let mut pairs = about.parameters.iter().zip(values);
     pairs.find(|(about, _)| about.role == Role::Shape).map_or(0.0, |(_, value)| *value)
 }
-
-/// Least distance between places, °C, and as a share of the width.
-const PLACE_STEP_C: f64 = 1.5;
-pub const PLACE_STEP: f64 = 0.7;

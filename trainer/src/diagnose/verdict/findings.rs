@@ -7,13 +7,10 @@ use crate::diagnose::forward::EffectSet;
 use crate::diagnose::problem::{GlsPair, NoiseModels, Problem, fixed};
 use crate::diagnose::regression::Score;
 use crate::diagnose::selection::{Found, held_out};
+use crate::diagnose::thresholds::{CONFOUNDED, CONFOUNDED_SHARE};
 use firmware_core::effect::Role;
 use nalgebra::DVector;
 use std::collections::BTreeMap;
-
-/// Effects whose ΔBIC differs by less are confounded; and by less than this share, as no formula is exact.
-const CONFOUNDED: f64 = 10.0;
-const CONFOUNDED_SHARE: f64 = 0.1;
 
 /// What was found, from the residual before it on, µg.
 pub fn findings(problem: &Problem, start: &EffectSet, found: &Findings, mut residual_ug: f64) -> Vec<Finding> {

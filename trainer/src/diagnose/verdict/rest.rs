@@ -7,20 +7,15 @@ use crate::diagnose::forward::name_of;
 use crate::diagnose::lack_of_fit::LackOfFit;
 use crate::diagnose::noise::{Component, NoiseModel};
 use crate::diagnose::problem::Problem;
+use crate::diagnose::thresholds::{LEAST_CHANCE, STRUCTURE, UNSEEN_RIG};
 
-/// Wander within a run beyond so many times the sample noise is no noise of a resonator: something causes it.
-const STRUCTURE: f64 = 1.0;
-/// And beyond this share of what a rig does per g across the input axis, if nobody wrote down how it stood.
-const UNSEEN: f64 = 0.5;
-/// A dependence less likely by chance than this is one.
-const SURELY: f64 = 1e-4;
 /// Seconds in which a random walk is compared with the other parts of the wander.
 const WALK_SQRT_S: f64 = 60.0;
 
 /// Whether something causes the wander within runs.
 pub fn is_structured(problem: &Problem, noise: &NoiseModel) -> bool {
     let rig_ug = noise[Component::Position].hypot(noise[Component::Turn]);
-    let unseen_ug = if problem.cells().may_turn_unseen() { UNSEEN * rig_ug } else { 0.0 };
+    let unseen_ug = if problem.cells().may_turn_unseen() { UNSEEN_RIG * rig_ug } else { 0.0 };
     wander_ug(noise) > f64::max(STRUCTURE * problem.sample_ug, unseen_ug)
 }
 
@@ -48,7 +43,7 @@ pub fn unexplained_rest(
     dependences: &[Dependence],
     campaign: &Campaign,
 ) -> Unexplained {
-    let surely = dependences.iter().filter(|one| one.chance_after < SURELY && one.after_ug > 0.0);
+    let surely = dependences.iter().filter(|one| one.chance_after < LEAST_CHANCE && one.after_ug > 0.0);
     let mut sizes: Vec<(f64, &String)> = surely.map(|one| (one.after_ug, &one.on)).collect();
     sizes.sort_by(|a, b| b.0.total_cmp(&a.0));
     let formula = found.formula.as_ref().map(|formula| name_of(&formula.effect).to_owned());
