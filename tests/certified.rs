@@ -16,7 +16,7 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
 use tests::workspace::{root, text};
-use trainer::fit::levenberg_marquardt::{Limits, Minimum, Problem, Quadratic, minimise};
+use trainer::fit::levenberg_marquardt::{CAUTIOUS, Limits, Minimum, Problem, Quadratic, minimise};
 
 /// Matching digits that every parameter of every problem must have from either start.
 const LEAST_DIGITS: f64 = 9.0;
@@ -24,7 +24,7 @@ const LEAST_DIGITS: f64 = 9.0;
 const CERTIFIED_DIGITS: f64 = 11.0;
 /// Ends where the gradient is rounding and nothing else. MGH10 follows a curved valley through fifty
 /// orders of magnitude of its first parameter.
-const LIMITS: Limits = Limits { iterations: 10_000, decrease: 1e-26, step: 0.0 };
+const LIMITS: Limits = Limits { iterations: 10_000, decrease: 1e-26, step: 0.0, damping: CAUTIOUS };
 
 /// One data file.
 struct Certified {

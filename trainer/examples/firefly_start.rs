@@ -15,7 +15,7 @@ use separable::{Departure, STEEPEST_START, random_start};
 use std::ops::ControlFlow;
 use synthetic::NOISE_G;
 use trainer::fit::firefly::{Domain, ImprovedSettings, StandardSettings, improved, standard};
-use trainer::fit::levenberg_marquardt::{Limits, Problem, Quadratic, minimise};
+use trainer::fit::levenberg_marquardt::{CAUTIOUS, Limits, Problem, Quadratic, minimise};
 use trainer::fit::network::NONLINEAR;
 use trainer::fit::random::stream;
 
@@ -28,7 +28,7 @@ const LINEARISATION: usize = 9;
 /// A network has reached the noise when its residual is within five per cent of it.
 const REACHED: f64 = 1.05;
 /// As the trainer's.
-const LIMITS: Limits = Limits { iterations: 200, decrease: 1e-5, step: 1e-9 };
+const LIMITS: Limits = Limits { iterations: 200, decrease: 1e-5, step: 1e-9, damping: CAUTIOUS };
 /// What a swarm of ten costs in fifty generations, as nearly as comparing takes.
 const SWARM_EVALUATIONS: usize = 560;
 

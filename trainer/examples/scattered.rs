@@ -13,11 +13,11 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use trainer::campaign::{Campaign, ReadOptions};
-use trainer::fit::levenberg_marquardt::{Limits, minimise};
+use trainer::fit::levenberg_marquardt::{CAUTIOUS, Limits, minimise};
 use trainer::fit::random::stream;
 
 /// More patient than the trainer's: it is the last digit that is compared.
-const LIMITS: Limits = Limits { iterations: 1000, decrease: 1e-7, step: 1e-9 };
+const LIMITS: Limits = Limits { iterations: 1000, decrease: 1e-7, step: 1e-9, damping: CAUTIOUS };
 const SEED: u64 = 1;
 
 fn main() -> Result<(), Box<dyn Error>> {

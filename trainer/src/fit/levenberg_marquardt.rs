@@ -51,6 +51,8 @@ pub struct Limits {
     pub decrease: f64,
     /// Stop when no parameter moves by more than this fraction of its size.
     pub step: f64,
+    /// Damping of the first step, relative to the matrix's diagonal: [`CAUTIOUS`] far from a minimum.
+    pub damping: f64,
 }
 
 /// Why the iteration ended. None of them is an error.
@@ -81,9 +83,9 @@ pub struct Minimum {
     pub termination: Termination,
 }
 
-/// Damping relative to the matrix's diagonal at the start. Far from a minimum the model is good for a
-/// short step only; a long one may end where no gradient leads back from. Caution costs ten steps.
-const FIRST_DAMPING: f64 = 1e3;
+/// First damping far from a minimum: there the model is good for a short step only; a long one may end where no gradient
+/// leads back from. Caution costs ten steps.
+pub const CAUTIOUS: f64 = 1e3;
 const LEAST_DAMPING: f64 = 1e-15;
 const MOST_DAMPING: f64 = 1e16;
 /// Share of a remembered scale that is left after an accepted step.
@@ -98,7 +100,7 @@ pub fn minimise(
     limits: &Limits,
     mut observe: impl FnMut(usize, f64) -> ControlFlow<()>,
 ) -> Minimum {
-    let mut search = Search::new(problem, start);
+    let mut search = Search::new(problem, start, limits.damping);
     for iteration in 1..=limits.iterations {
         let step = search.step(problem, limits);
         if let Step::End(termination) = step {
@@ -129,7 +131,7 @@ struct Search {
 }
 
 impl Search {
-    fn new(problem: &mut impl Problem, start: &[f64]) -> Self {
+    fn new(problem: &mut impl Problem, start: &[f64], damping: f64) -> Self {
         let mut quadratic = Quadratic::zeros(problem.parameters());
         problem.linearise(start, &mut quadratic);
         let mut search = Self {
@@ -137,7 +139,7 @@ impl Search {
             trial: start.to_vec(),
             scale: DVector::zeros(problem.parameters()),
             quadratic,
-            damping: FIRST_DAMPING,
+            damping,
             growth: 2.0,
             promised: f64::INFINITY,
         };
@@ -254,7 +256,7 @@ mod tests {
         }
     }
 
-    const LIMITS: Limits = Limits { iterations: 200, decrease: 1e-30, step: 1e-14 };
+    const LIMITS: Limits = Limits { iterations: 200, decrease: 1e-30, step: 1e-14, damping: CAUTIOUS };
 
     #[test]
     fn it_walks_through_rosenbrocks_valley() {

@@ -6,7 +6,7 @@
 use super::lesson::Lesson;
 use crate::campaign::Run;
 use crate::fit::dataset::{Datum, InputScale};
-use crate::fit::levenberg_marquardt::{Limits, Minimum, Problem, Quadratic, Termination, minimise};
+use crate::fit::levenberg_marquardt::{CAUTIOUS, Limits, Minimum, Problem, Quadratic, Termination, minimise};
 use crate::fit::neighbours::merged;
 use crate::fit::random::{between, stream};
 use crate::model::Model;
@@ -19,7 +19,7 @@ use protocol::limits::{HIDDEN, WEIGHTS};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-const LIMITS: Limits = Limits { iterations: 300, decrease: 1e-7, step: 1e-9 };
+const LIMITS: Limits = Limits { iterations: 300, decrease: 1e-7, step: 1e-9, damping: CAUTIOUS };
 /// First weights lie within plus and minus this, as those of the firefly swarms.
 const WEIGHT_BOUND: f64 = 1.0;
 

@@ -5,7 +5,7 @@ use super::settings::Anchoring;
 use super::task::Task;
 use crate::fit::dataset::Datum;
 use crate::fit::effects::{Coefficients, Frame, MovedRows};
-use crate::fit::levenberg_marquardt::{Limits, Termination, minimise};
+use crate::fit::levenberg_marquardt::{CAUTIOUS, Limits, Termination, minimise};
 use crate::fit::network::{
     Anchors, Fit, Group, HIDDEN_SIZE, NONLINEAR, NetworkProblem, OUTPUT_SIZE, Prior, Rows, SlopeRow, ValueRow,
 };
@@ -29,7 +29,7 @@ const VALUE_ALLOWANCE: f64 = 0.03;
 const ANCHOR_GRID: i32 = 9;
 /// Steepest start of a hidden unit.
 const STEEPEST_START: f64 = 2.5;
-const LIMITS: Limits = Limits { iterations: 200, decrease: 1e-5, step: 1e-9 };
+const LIMITS: Limits = Limits { iterations: 200, decrease: 1e-5, step: 1e-9, damping: CAUTIOUS };
 
 /// Most often that networks are trained on with the scatter that the best of them leaves. Where the polynomial
 /// misses much, the first network is still held too stiff to tell the noise; the second one rarely is.
