@@ -2,13 +2,15 @@
 
 mod gauss_newton;
 mod gls_pair;
+mod noise_estimate;
 mod noise_models;
 mod nuisance;
 mod setup;
 
 pub(super) use gauss_newton::fit;
 pub(super) use gls_pair::GlsPair;
-pub(super) use noise_models::{NoiseModels, estimate, initial_states, refine, sum_noise};
+pub(super) use noise_estimate::{estimate, refine, sum_noise};
+pub(super) use noise_models::{NoiseModels, initial_states};
 pub(super) use nuisance::{Nuisance, constrained, fixed, free, widened};
 pub(super) use setup::{in_model, problem, scale, yardstick};
 
