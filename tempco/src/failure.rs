@@ -1,6 +1,6 @@
 //! Why a command could not do what it was asked, and the way out.
 
-use crate::terminal::visible;
+use crate::visible::visible;
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;

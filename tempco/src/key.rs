@@ -1,10 +1,10 @@
 //! The factory's keys, as files of one line of hexadecimal digits.
 
+use crate::digits::digits;
 use crate::failure::Failure;
 use crate::output::{write_new, write_secret};
 use ed25519_compact::{KeyPair, Seed};
 use protocol::Signed;
-use std::fmt::Write;
 use std::path::Path;
 
 /// A key that signs.
@@ -64,12 +64,4 @@ fn read(path: &Path) -> Result<[u8; 32], Failure> {
     let key: Option<Vec<u8>> = (0..32).map(byte).collect();
     let key = key.filter(|_| text.len() == 64).and_then(|key| key.try_into().ok());
     key.ok_or_else(|| Failure::new(format_args!("{}: expected 64 hexadecimal digits, a key", path.display())))
-}
-
-/// Bytes as hexadecimal digits.
-pub fn digits(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }

@@ -1,6 +1,7 @@
 //! Lines to instruments: what a user may write for a port, and how each kind carries bytes.
 
 mod qemu;
+mod received;
 mod serial;
 mod tcp;
 
@@ -88,20 +89,6 @@ impl Transport for InMemory {
         let Ok(byte) = self.0.receive();
         Ok(byte)
     }
-}
-
-/// The next byte of a reader that gives up waiting by itself.
-fn next_byte(received: &mut Vec<u8>, read: impl FnOnce(&mut [u8]) -> io::Result<usize>) -> io::Result<Option<u8>> {
-    if received.is_empty() {
-        let mut buffer = [0; 512];
-        match read(&mut buffer) {
-            Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
-            Ok(count) => received.extend(buffer[..count].iter().rev()),
-            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(received.pop())
 }
 
 impl From<LinkError<io::Error>> for Failure {

@@ -4,6 +4,7 @@
 
 mod command;
 mod data;
+mod digits;
 mod failure;
 mod hex;
 mod key;
@@ -20,6 +21,8 @@ mod shell;
 mod subject;
 mod table;
 mod terminal;
+mod verbs;
+mod visible;
 mod workbench;
 
 use clap::Parser;
@@ -35,7 +38,7 @@ use std::process::ExitCode;
 #[command(name = "tempco", version, after_help = "Start with:  tempco demo")]
 struct Cli {
     #[command(subcommand)]
-    command: command::Command,
+    command: verbs::Command,
 }
 
 /// What a shell says of any tool whose reader went away, as `head` does.

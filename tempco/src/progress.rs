@@ -1,6 +1,6 @@
 //! Progress bars, on a terminal only, and cancelling with Ctrl-C.
 
-use crate::terminal::visible_word;
+use crate::visible::visible_word;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;

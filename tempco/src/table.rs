@@ -1,6 +1,6 @@
 //! Tables for people: columns padded to their widest cell, numbers to the right.
 
-use crate::terminal::visible_word;
+use crate::visible::visible_word;
 use std::borrow::Cow;
 use std::fmt;
 

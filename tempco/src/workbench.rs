@@ -3,29 +3,35 @@
 //! ```text
 //! browser ─▶ guard ─▶ server ─▶ verb/… ─▶ job: the command's own function, on a thread
 //!    ▲                             └────────▶ session ◀────┘  what there is: campaign, models, answers
-//!    └──────── events ◀── bench ◀──────────────┘
+//!    └──────── events ◀── shared ◀─────────────┘
 //! ```
 //!
 //! The page draws and asks; it computes no figure. Every action is a command that can be typed instead, and shows it.
 //! `docs/workbench.md` has the tour, and what keeps other pages and users out.
 
 mod assets;
-mod bench;
 mod commands;
+mod entry;
 mod events;
 mod guard;
 mod job;
+mod json;
 mod launch;
+mod measured;
 mod places;
+mod refusal;
 mod samples;
 mod server;
 mod session;
-mod shelf;
+mod shared;
+mod shelved;
+mod start;
 mod uploads;
 mod verb;
 mod view;
 
 pub use server::serve;
+pub use start::Workbench;
 
 use crate::data::Data;
 use std::path::PathBuf;

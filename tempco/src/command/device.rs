@@ -9,10 +9,10 @@ mod read;
 mod rollback;
 mod serve;
 mod status;
+mod target;
 mod watch;
 
 use crate::failure::{Answer, Failure};
-use crate::link::{PORTS, Port};
 use clap::{Args, Subcommand};
 
 /// Talks to an instrument: who it is, what it measures, what it stores.
@@ -52,15 +52,4 @@ impl Device {
             Verb::Provision(command) => command.run(),
         }
     }
-}
-
-/// Which instrument, and how to print what it says.
-#[derive(Args)]
-struct Target {
-    #[arg(help = format!("Where the instrument is: {PORTS}"))]
-    port: Port,
-
-    /// Prints JSON instead of text
-    #[arg(long)]
-    json: bool,
 }

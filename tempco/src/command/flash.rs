@@ -1,7 +1,8 @@
 //! `tempco flash MODEL --to PORT`
 
+use crate::digits::digits;
 use crate::failure::{Answer, Failure};
-use crate::key::{SecretKey, digits};
+use crate::key::SecretKey;
 use crate::link::{AnyLink, PORTS, Port};
 use crate::progress::spinner;
 use crate::terminal::say;

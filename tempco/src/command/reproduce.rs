@@ -3,21 +3,22 @@
 mod campaigns;
 mod claims;
 mod evolution_plot;
+mod extent;
 mod json;
+mod number;
 mod rates_plot;
 mod searches;
 mod shortfalls;
 mod sweep_plot;
 mod tables;
 
-use crate::data::{restarts, seeds};
 use crate::failure::{Answer, Failure};
-use crate::output::{Force, Kind, Output, make_folder};
+use crate::output::{Kind, make_folder};
 use crate::terminal::say;
 use campaigns::Judged;
 use clap::Args;
-use clap::builder::RangedU64ValueParser;
-use std::path::{Path, PathBuf};
+use extent::Extent;
+use std::path::PathBuf;
 use trainer::reproduction::trial::Trial;
 
 /// Computes the figures and tables of Huang et al. (Micromachines 2022, 13, 1054) again, and counts what they claim.
@@ -35,28 +36,8 @@ pub struct Reproduce {
     #[arg(long)]
     tables: bool,
 
-    /// Seeds of every search on a test function, 1 to 1000000
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    seeds: u64,
-
-    /// Trainings from different starts, 1 to 10000; the paper makes 30
-    #[arg(long, value_name = "N", default_value_t = 30, value_parser = restarts())]
-    restarts: usize,
-
-    /// Passes of a gradient descent, up to 10000000; the paper doesn't say
-    #[arg(long, value_name = "N", default_value_t = 30_000, value_parser = RangedU64ValueParser::<usize>::new().range(1..=10_000_000))]
-    passes: usize,
-
-    /// Seed of every random number, up to 2⁶³ − 1
-    #[arg(long, default_value_t = 1, value_parser = seeds())]
-    seed: u64,
-
-    /// Folder for pictures and campaigns
-    #[arg(short, long, value_name = "FOLDER", default_value = "tempco-reproduction")]
-    output: PathBuf,
-
     #[command(flatten)]
-    force: Force,
+    extent: Extent,
 
     /// Prints one JSON object instead of text
     #[arg(long)]
@@ -65,23 +46,23 @@ pub struct Reproduce {
 
 impl Reproduce {
     pub fn run(&self) -> Result<Answer, Failure> {
-        make_folder(&self.output)?;
+        make_folder(&self.extent.output)?;
         self.check()?;
         let all = self.figures == self.tables;
         let mut files = Vec::new();
         let mut trials = Vec::new();
         let mut judged = Vec::new();
         if all || self.figures {
-            trials = searches::search(self.seeds, self.seed)?;
+            trials = searches::search(self.extent.seeds, self.extent.seed)?;
             self.draw(&mut files, "figure-3-schaffer.svg", &evolution_plot::evolution("Schaffer", &trials)?)?;
             self.draw(&mut files, "figure-4-rastrigin.svg", &evolution_plot::evolution("Rastrigin", &trials)?)?;
             self.draw(&mut files, "success-rates.svg", &rates_plot::rates(&trials)?)?;
-            self.say(|| searches::text(&trials, self.seed) + &claims::text(&trials))?;
+            self.say(|| searches::text(&trials, self.extent.seed) + &claims::text(&trials))?;
         }
         if all || self.tables {
-            judged = campaigns::judge(self, &mut files)?;
+            judged = campaigns::judge(&self.extent, &mut files)?;
             self.draw(&mut files, "between-the-levels.svg", &sweep_plot::sweep(&judged)?)?;
-            self.say(|| tables::text(&judged, self))?;
+            self.say(|| tables::text(&judged, &self.extent))?;
         }
         self.finish(&trials, &judged, &files)?;
         Ok(Answer::Yes)
@@ -93,33 +74,25 @@ impl Reproduce {
 
     fn finish(&self, trials: &[Trial], judged: &[Judged], files: &[PathBuf]) -> Result<(), Failure> {
         if self.json {
-            return say!("{:#}", json::json(self, trials, judged, files));
+            return say!("{:#}", json::json(&self.extent, trials, judged, files));
         }
         let names: Vec<_> = files.iter().filter_map(|file| file.file_name()?.to_str()).collect();
-        say!("Files in {}: {}", self.output.display(), names.join(", "))
+        say!("Files in {}: {}", self.extent.output.display(), names.join(", "))
     }
 
     /// Writes a picture.
     fn draw(&self, files: &mut Vec<PathBuf>, name: &str, svg: &str) -> Result<(), Failure> {
-        let path = self.path(name);
-        self.place(name, Kind::Picture).write(svg.as_bytes())?;
+        let path = self.extent.path(name);
+        self.extent.place(name, Kind::Picture).write(svg.as_bytes())?;
         files.push(path);
         Ok(())
-    }
-
-    fn place(&self, name: &str, kind: Kind) -> Output {
-        Output::in_folder(&self.path(name), kind, "-o", self.force)
     }
 
     /// Every file that may be written, before hours of work.
     fn check(&self) -> Result<(), Failure> {
         let pictures =
             ["figure-3-schaffer.svg", "figure-4-rastrigin.svg", "success-rates.svg", "between-the-levels.svg"];
-        pictures.iter().try_for_each(|name| self.place(name, Kind::Picture).check())?;
-        campaigns::files().try_for_each(|name| self.place(&name, Kind::Campaign).check())
-    }
-
-    fn path(&self, name: impl AsRef<Path>) -> PathBuf {
-        self.output.join(name)
+        pictures.iter().try_for_each(|name| self.extent.place(name, Kind::Picture).check())?;
+        campaigns::files().try_for_each(|name| self.extent.place(&name, Kind::Campaign).check())
     }
 }

@@ -1,6 +1,6 @@
 //! An instrument at a serial port or a pseudo-terminal.
 
-use super::next_byte;
+use super::received::next_byte;
 use crate::failure::Failure;
 use firmware_sim::link::Transport;
 use serialport::SerialPort;

@@ -1,6 +1,6 @@
 //! An instrument at a socket: `tempco device serve`, or a serial port that a computer elsewhere offers.
 
-use super::next_byte;
+use super::received::next_byte;
 use crate::failure::Failure;
 use firmware_sim::link::Transport;
 use std::io::{self, Read, Write};

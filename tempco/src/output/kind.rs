@@ -3,8 +3,8 @@
 //! A table or a scenario looks like any other of its kind, and people go on writing in them. The first line of those that
 //! tempco wrote says so and holds the SHA-256 of the rest: a file that was changed since is its user's.
 
+use crate::digits::digits;
 use crate::hex::pieces;
-use crate::key::digits;
 use crate::region;
 use firmware_sim::seal::TITLE;
 use firmware_sim::virtual_flash::SLOT_BYTES;

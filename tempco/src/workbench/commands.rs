@@ -1,6 +1,7 @@
 //! Every action as the command line that does the same.
 
-use super::session::{Entry, Measured};
+use super::entry::Entry;
+use super::measured::Measured;
 use crate::command::train::Training;
 use crate::data::HeldOut;
 use crate::shell::{self, option, word};

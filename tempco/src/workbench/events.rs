@@ -1,6 +1,6 @@
 //! News as it comes, as server-sent events: that the state has changed, and what work tells meanwhile.
 
-use super::bench::Bench;
+use super::shared::Shared;
 use axum::extract::State;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
@@ -17,7 +17,7 @@ const TOGETHER: Duration = Duration::from_millis(60);
 
 /// What one listener knows already.
 struct Listener {
-    bench: Arc<Bench>,
+    shared: Arc<Shared>,
     bell: watch::Receiver<u64>,
     version: Option<u64>,
     /// Of each job so many reports.
@@ -27,9 +27,9 @@ struct Listener {
 }
 
 /// `GET /api/events`
-pub async fn answer(State(bench): State<Arc<Bench>>) -> Response {
-    let bell = bench.bell();
-    let listener = Listener { bench, bell, version: None, heard: HashMap::new(), waiting: Vec::new() };
+pub async fn answer(State(shared): State<Arc<Shared>>) -> Response {
+    let bell = shared.bell();
+    let listener = Listener { shared, bell, version: None, heard: HashMap::new(), waiting: Vec::new() };
     let stream = unfold(listener, |mut listener| async move {
         let event = listener.next().await?;
         Some((Ok::<_, Infallible>(event), listener))
@@ -55,7 +55,7 @@ impl Listener {
     fn listen(&mut self) {
         self.bell.mark_unchanged();
         let (version, jobs) = {
-            let session = self.bench.session();
+            let session = self.shared.session();
             (session.version, session.told_by())
         };
         if self.version.replace(version) != Some(version) {

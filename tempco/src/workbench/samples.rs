@@ -1,8 +1,10 @@
 //! The samples of one or two models, for the linked plots.
 
-use super::bench::{Bench, Refusal};
-use super::server;
-use super::session::{Entry, Session};
+use super::entry::Entry;
+use super::json::json;
+use super::refusal::Refusal;
+use super::session::Session;
+use super::shared::Shared;
 use super::verb::{entry, measured};
 use axum::body::Bytes;
 use axum::extract::{Query, State};
@@ -49,9 +51,9 @@ impl Looked {
 }
 
 /// `GET /api/samples?models=1,2`: the length of a JSON header, the header, then columns of 32-bit numbers, little-endian.
-pub async fn answer(State(bench): State<Arc<Bench>>, Query(Wanted { models }): Query<Wanted>) -> Response {
+pub async fn answer(State(shared): State<Arc<Shared>>, Query(Wanted { models }): Query<Wanted>) -> Response {
     let numbers: Vec<usize> = models.split(',').filter_map(|number| number.parse().ok()).collect();
-    let looked = Looked::at(&bench.session(), &numbers);
+    let looked = Looked::at(&shared.session(), &numbers);
     match tokio::task::spawn_blocking(move || looked.map(|looked| table(&looked, &numbers))).await {
         Ok(Ok(bytes)) => ([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response(),
         Ok(Err(refusal)) => refusal.into_response(),
@@ -91,12 +93,12 @@ struct Choice {
 }
 
 /// `POST /api/chosen`: what a choice among all samples, drawn or not, amounts to.
-pub async fn chosen(State(bench): State<Arc<Bench>>, body: Bytes) -> Response {
+pub async fn chosen(State(shared): State<Arc<Shared>>, body: Bytes) -> Response {
     let choice: Choice = match serde_json::from_slice(&body) {
         Ok(choice) => choice,
         Err(error) => return (StatusCode::BAD_REQUEST, error.to_string()).into_response(),
     };
-    let looked = Looked::at(&bench.session(), &choice.models);
+    let looked = Looked::at(&shared.session(), &choice.models);
     let counted = tokio::task::spawn_blocking(move || {
         let looked = looked?;
         let is =
@@ -105,7 +107,7 @@ pub async fn chosen(State(bench): State<Arc<Bench>>, body: Bytes) -> Response {
         Ok::<_, Refusal>(looked.columns.chosen(&looked.campaign, &looked.residuals(), &choice.ranges, wanted))
     });
     match counted.await {
-        Ok(Ok(chosen)) => server::json(&chosen),
+        Ok(Ok(chosen)) => json(&chosen),
         Ok(Err(refusal)) => refusal.into_response(),
         Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response(),
     }

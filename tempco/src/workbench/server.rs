@@ -1,7 +1,9 @@
 //! The server: one router, every request judged before it is looked at.
 
-use super::bench::{Bench, Refusal};
 use super::guard::{Guard, seal};
+use super::json::json;
+use super::refusal::Refusal;
+use super::shared::Shared;
 use super::{First, Settings, assets, events, launch, places, samples, uploads, verb};
 use crate::failure::Failure;
 use crate::terminal::{remark, say};
@@ -24,8 +26,8 @@ pub fn serve(settings: Settings) -> Result<(), Failure> {
     let port = listener.local_addr().map_err(Failure::new)?.port();
     let guard = Guard::new(port)?;
     let _claim = places::claimed(&folder)?;
-    let bench = Arc::new(Bench::new(folder));
-    begin(&bench, first)?;
+    let shared = Arc::new(Shared::new(folder));
+    begin(&shared, first)?;
     say!("Workbench:  {}", guard.url())?;
     // Whoever has read the address may read no further: that ends nothing.
     remark!("Stop it with Ctrl-C.");
@@ -34,7 +36,7 @@ pub fn serve(settings: Settings) -> Result<(), Failure> {
     runtime
         .block_on(async {
             let listener = tokio::net::TcpListener::from_std(listener)?;
-            serve_http(listener, router(guard, bench)).await
+            serve_http(listener, router(guard, shared)).await
         })
         .map_err(Failure::new)
 }
@@ -48,21 +50,21 @@ fn bind(port: u16) -> Result<TcpListener, Failure> {
     Ok(listener)
 }
 
-fn begin(bench: &Arc<Bench>, first: First) -> Result<(), Failure> {
+fn begin(shared: &Arc<Shared>, first: First) -> Result<(), Failure> {
     let started = match first {
         First::Data(data) => {
             // What is misspelt is said where it was typed.
             if data.files.iter().any(|file| !file.exists()) {
                 data.read()?;
             }
-            verb::load::start(bench, data)
+            verb::load::start(shared, data)
         }
-        First::Demo { seed } => verb::demo::run(bench, verb::demo::Request { seed: Some(seed) }),
+        First::Demo { seed } => verb::demo::run(shared, verb::demo::Request { seed: Some(seed) }),
     };
     started.map_err(|refusal| refusal.failure)
 }
 
-fn router(guard: Guard, bench: Arc<Bench>) -> Router {
+fn router(guard: Guard, shared: Arc<Shared>) -> Router {
     let mut router = Router::new()
         .route("/api/state", get(state))
         .route("/api/effects", get(verb::effects::answer))
@@ -89,7 +91,7 @@ fn router(guard: Guard, bench: Arc<Bench>) -> Router {
     for (path, kind, text) in assets::ALL {
         router = router.route(path, get(|| async { ([(header::CONTENT_TYPE, *kind)], *text) }));
     }
-    router.layer(from_fn_with_state(guard, judged)).with_state(bench)
+    router.layer(from_fn_with_state(guard, judged)).with_state(shared)
 }
 
 /// Lets a request pass, or says why not; either way tells the browser what the answer may be used for.
@@ -102,22 +104,22 @@ async fn judged(State(guard): State<Guard>, request: Request, next: Next) -> Res
     response
 }
 
-async fn state(State(bench): State<Arc<Bench>>) -> Response {
-    json(&super::view::state(&bench.session()))
+async fn state(State(shared): State<Arc<Shared>>) -> Response {
+    json(&super::view::state(&shared.session()))
 }
 
 /// A verb: its request as JSON, nothing but consent or refusal in return. What comes of it is in the state.
-fn action<R>(run: fn(&Arc<Bench>, R) -> Result<(), Refusal>) -> MethodRouter<Arc<Bench>>
+fn action<R>(run: fn(&Arc<Shared>, R) -> Result<(), Refusal>) -> MethodRouter<Arc<Shared>>
 where
     R: DeserializeOwned + Send + 'static,
 {
-    post(move |State(bench): State<Arc<Bench>>, body: Bytes| async move {
+    post(move |State(shared): State<Arc<Shared>>, body: Bytes| async move {
         let acted = tokio::task::spawn_blocking(move || {
             let request = serde_json::from_slice(&body).map_err(|error| Refusal {
                 status: StatusCode::BAD_REQUEST,
                 failure: Failure::new(format_args!("not understood: {error}")),
             })?;
-            run(&bench, request)
+            run(&shared, request)
         });
         match acted.await {
             Ok(Ok(())) => StatusCode::NO_CONTENT.into_response(),
@@ -128,20 +130,4 @@ where
             }
         }
     })
-}
-
-impl IntoResponse for Refusal {
-    fn into_response(self) -> Response {
-        let mut response = json(&self.failure);
-        *response.status_mut() = self.status;
-        response
-    }
-}
-
-/// Data as JSON.
-pub fn json(value: &impl serde::Serialize) -> Response {
-    match serde_json::to_vec(value) {
-        Ok(text) => ([(header::CONTENT_TYPE, "application/json")], text).into_response(),
-        Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response(),
-    }
 }

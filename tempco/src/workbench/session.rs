@@ -1,26 +1,20 @@
 //! What there is between one action and the next: the campaign, the models made of it, and the answers about them.
 
+mod shelf;
+
+use super::entry::Entry;
 use super::job::{Job, Step};
-use super::shelf::Shelved;
+use super::measured::Measured;
+use super::refusal::Refusal;
+use super::shelved::Shelved;
 use super::{commands, places};
-use crate::command::inspect::RunSummary;
-use crate::command::train::Simpler;
-use crate::command::verify::Parity;
-use crate::data::{Data, HeldOut};
 use crate::failure::Failure;
 use crate::output::write_whole;
+use axum::http::StatusCode;
 use serde::Serialize;
 use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::Arc;
-use trainer::campaign::{Campaign, Split};
-use trainer::compare::{Comparison, compare};
-use trainer::diagnose::Diagnosis;
-use trainer::diagnose::plan::Plan;
-use trainer::ladder::Rung;
-use trainer::linked::Columns;
-use trainer::model::Model;
-use trainer::residuals::{arranged, residuals};
 
 /// Everything that a page shows.
 pub struct Session {
@@ -56,124 +50,6 @@ pub struct Refused {
     pub failure: Failure,
 }
 
-/// A campaign and how it is divided.
-#[derive(Clone)]
-pub struct Measured {
-    pub data: Data,
-    /// Files beside the data that say how to read it.
-    pub mappings: Vec<PathBuf>,
-    pub campaign: Arc<Campaign>,
-    pub runs: Arc<Vec<RunSummary>>,
-    pub held_out: HeldOut,
-    pub split: Result<Split, Failure>,
-    pub blind: Option<Blind>,
-}
-
-/// What is known of a campaign that hides something.
-#[derive(Clone)]
-pub struct Blind {
-    pub envelope: PathBuf,
-    /// The command that made it.
-    pub command: String,
-    /// What noise alone would leave on the held-out runs, as the simulation states it, µg.
-    pub noise_ug: f64,
-    /// What was hidden, once the seal is broken.
-    pub revealed: Option<serde_json::Value>,
-}
-
-/// A model and what was found out about it.
-pub struct Entry {
-    /// The one in its file's name, which is no other model's.
-    pub number: usize,
-    pub file: PathBuf,
-    /// The model that it came from.
-    pub parent: Option<usize>,
-    pub title: String,
-    pub command: String,
-    pub model: Arc<Model>,
-    pub comparison: Comparison,
-    /// Row by row in the campaign's order, µg.
-    pub residuals_ug: Arc<Vec<f32>>,
-    /// What they may depend on.
-    pub columns: Arc<Columns>,
-    pub simpler: Vec<Simpler>,
-    pub ladder: Vec<Rung>,
-    pub diagnosis: Option<Arc<Diagnosis>>,
-    pub parity: Option<Parity>,
-    pub exported: Option<Exported>,
-    pub planned: Option<Planned>,
-}
-
-/// A calibration on disk.
-#[derive(Clone, Debug)]
-pub struct Exported {
-    /// Files and what was written into them: Intel HEX, the bare blob.
-    pub files: [(PathBuf, Vec<u8>); 2],
-    /// Where a device looks for it.
-    pub address: String,
-}
-
-/// The next recording.
-#[derive(Clone, Debug, Serialize)]
-pub struct Planned {
-    #[serde(flatten)]
-    pub plan: Plan,
-    /// The same for people.
-    pub text: String,
-    /// The command that planned it.
-    pub command: String,
-    /// The best recording's scenario, if any is worth making.
-    #[serde(skip)]
-    pub file: Option<PathBuf>,
-}
-
-/// Where a new model comes from.
-pub struct Origin {
-    pub parent: Option<usize>,
-    pub title: String,
-    /// Without the model's place, which it gets last of all.
-    pub command: String,
-}
-
-impl Entry {
-    /// Compares the model with the campaign.
-    pub fn new(origin: Origin, model: Model, campaign: &Campaign) -> Result<Self, Failure> {
-        let comparison = compare(&model, campaign)?;
-        Self::compared(origin, model, comparison, campaign)
-    }
-
-    /// A model that was compared already.
-    pub fn compared(
-        origin: Origin,
-        model: Model,
-        comparison: Comparison,
-        campaign: &Campaign,
-    ) -> Result<Self, Failure> {
-        let Origin { parent, title, command } = origin;
-        let arranged = arranged(&model, campaign).map_err(Failure::from)?;
-        let residuals = residuals(&model, &arranged.runs)?;
-        let columns = Columns::of(&residuals);
-        let residuals_ug = residuals.runs.iter().flat_map(|run| &run.residuals_g).map(|g| (g * 1e6) as f32).collect();
-        Ok(Self {
-            number: 0,
-            file: PathBuf::new(),
-            parent,
-            title,
-            command,
-            model: Arc::new(model),
-            comparison,
-            residuals_ug: Arc::new(residuals_ug),
-            columns: Arc::new(columns),
-            simpler: Vec::new(),
-            ladder: Vec::new(),
-            diagnosis: None,
-            parity: None,
-            exported: None,
-            planned: None,
-        })
-    }
-}
-
 impl Session {
     pub fn new(folder: PathBuf) -> Self {
         Self {
@@ -196,6 +72,15 @@ impl Session {
 
     pub const fn is_busy(&self) -> bool {
         self.running
+    }
+
+    /// Refuses while work goes on.
+    pub fn idle(&self) -> Result<(), Refusal> {
+        if !self.is_busy() {
+            return Ok(());
+        }
+        let failure = Failure::new("something else is at work").help("wait for it, or stop it first");
+        Err(Refusal { status: StatusCode::CONFLICT, failure })
     }
 
     pub const fn next_job(&mut self) -> u64 {

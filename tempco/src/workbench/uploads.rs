@@ -1,10 +1,11 @@
 //! Files that are dropped on the page. Those that are dropped together get a new folder of their own, and keep their names
 //! in it: errors name them, so does every command line, and what says how to read some says nothing about others.
 
-use super::bench::{Bench, Refusal};
+use super::json::json;
 use super::places;
-use super::server::json;
+use super::refusal::Refusal;
 use super::session::Session;
+use super::shared::Shared;
 use crate::failure::Failure;
 use axum::body::Body;
 use axum::extract::{Query, State};
@@ -25,8 +26,8 @@ const NAME_BYTES_MAX: usize = 200;
 const FILE_BYTES_MAX: u64 = 4 << 30;
 
 /// `POST /api/uploads`: a folder for files that belong together.
-pub async fn open(State(bench): State<Arc<Bench>>) -> Response {
-    match opening(&mut bench.session()) {
+pub async fn open(State(shared): State<Arc<Shared>>) -> Response {
+    match opening(&mut shared.session()) {
         Ok(number) => json(&serde_json::json!({ "upload": number })),
         Err(refusal) => refusal.into_response(),
     }
@@ -61,12 +62,12 @@ pub struct Named {
 
 /// `POST /api/upload?upload=1&name=campaign.csv`
 pub async fn receive(
-    State(bench): State<Arc<Bench>>,
+    State(shared): State<Arc<Shared>>,
     Query(Named { upload, name }): Query<Named>,
     headers: HeaderMap,
     body: Body,
 ) -> Response {
-    let folder = opened(&bench.session(), upload);
+    let folder = opened(&shared.session(), upload);
     let path = match folder.and_then(|folder| path(&folder, &name)) {
         Ok(path) => path,
         Err(failure) => return Refusal::from(failure).into_response(),

@@ -15,8 +15,10 @@ pub mod stop;
 pub mod train;
 pub mod verify;
 
-use super::bench::Refusal;
-use super::session::{Entry, Measured, Session};
+use super::entry::Entry;
+use super::measured::Measured;
+use super::refusal::Refusal;
+use super::session::Session;
 use crate::failure::Failure;
 use axum::http::StatusCode;
 use serde::Deserialize;

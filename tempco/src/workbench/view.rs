@@ -1,8 +1,10 @@
 //! The session as a page receives it.
 
 use super::commands;
+use super::entry::{Entry, Exported, Planned};
+use super::measured::Measured;
 use super::places;
-use super::session::{Entry, Exported, Measured, Planned, Session};
+use super::session::Session;
 use crate::command::inspect::RunSummary;
 use crate::render::diagnosis::{first_to_add, verdict};
 use serde_json::{Value, json};

@@ -1,6 +1,6 @@
 //! `tempco device identify PORT`
 
-use super::Target;
+use super::target::Target;
 use crate::failure::{Answer, Failure};
 use crate::terminal::say;
 use clap::Args;

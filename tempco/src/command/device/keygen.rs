@@ -1,7 +1,8 @@
 //! `tempco device keygen -o factory`
 
+use crate::digits::digits;
 use crate::failure::{Answer, Failure};
-use crate::key::{SecretKey, digits, write_public};
+use crate::key::{SecretKey, write_public};
 use crate::terminal::say;
 use clap::Args;
 use std::path::PathBuf;

@@ -1,6 +1,6 @@
 //! `tempco device monitor PORT`
 
-use super::Target;
+use super::target::Target;
 use super::watch::{Pace, watch};
 use crate::failure::{Answer, Failure};
 use crate::render::status::{names, words};

@@ -1,8 +1,8 @@
 //! `tempco device read PORT -o calibration.bin`
 
-use super::Target;
+use super::target::Target;
+use crate::digits::digits;
 use crate::failure::{Answer, Failure};
-use crate::key::digits;
 use crate::output::{Force, Kind, Output};
 use crate::terminal::say;
 use clap::Args;

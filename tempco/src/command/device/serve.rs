@@ -17,7 +17,7 @@ use firmware_sim::virtual_flash::VirtualFlash;
 use firmware_sim::virtual_line::VirtualLine;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Runs a virtual instrument that measures the physics twin, and answers at a socket or a pseudo-terminal.
 ///
@@ -98,9 +98,6 @@ fn read(path: &Path) -> Result<VirtualFlash, Failure> {
         Err(error) => Err(Failure::io(path, &error)),
     }
 }
-
-/// How long the instrument sleeps at most between two looks at its line.
-const NAP: Duration = Duration::from_millis(5);
 
 /// Time since power-on.
 struct Clock(Instant);

@@ -1,8 +1,8 @@
 //! `tempco device status PORT`
 
-use super::Target;
+use super::target::Target;
+use crate::digits::digits;
 use crate::failure::{Answer, Failure};
-use crate::key::digits;
 use crate::render::status::{names, words};
 use crate::terminal::say;
 use clap::Args;

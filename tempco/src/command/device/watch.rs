@@ -1,6 +1,6 @@
 //! What `monitor` and `raw` share: a stream that is watched until somebody has enough.
 
-use super::Target;
+use super::target::Target;
 use crate::failure::{Answer, Failure};
 use crate::link::AnyLink;
 use crate::terminal::{remark, say};

@@ -1,6 +1,6 @@
 //! Tables 1 and 2: simulates the campaigns, trains every method once per set of training runs, judges all of them.
 
-use super::Reproduce;
+use super::extent::Extent;
 use crate::command::simulate;
 use crate::failure::Failure;
 use crate::output::Kind;
@@ -67,15 +67,15 @@ fn file(scenario: &str) -> String {
 }
 
 /// Judges every method on every campaign.
-pub fn judge(command: &Reproduce, files: &mut Vec<PathBuf>) -> Result<Vec<Judged>, Failure> {
+pub fn judge(extent: &Extent, files: &mut Vec<PathBuf>) -> Result<Vec<Judged>, Failure> {
     let mut taught: Vec<Taught> = Vec::new();
     let mut judged = Vec::new();
     for name in SCENARIOS {
         let scenario = Scenario::preset(name).ok_or_else(|| Failure::new(format_args!("no scenario named {name}")))?;
-        let recording = simulate::simulate(&scenario, command.seed)?;
+        let recording = simulate::simulate(&scenario, extent.seed)?;
         let file = file(name);
-        command.place(&file, Kind::Campaign).write(&simulate::written(&recording)?)?;
-        let path = command.path(file);
+        extent.place(&file, Kind::Campaign).write(&simulate::written(&recording)?)?;
+        let path = extent.path(file);
         let campaign = Campaign::read(std::slice::from_ref(&path), &ReadOptions::default())?;
         files.push(path);
         let split = campaign.split(&HoldOut::Named(TEST_RUNS.map(str::to_owned).to_vec()))?;
@@ -83,13 +83,13 @@ pub fn judge(command: &Reproduce, files: &mut Vec<PathBuf>) -> Result<Vec<Judged
         let known = taught.iter().position(|taught| same_rows(&taught.lessons, &lessons));
         let index = known.unwrap_or(taught.len());
         if known.is_none() {
-            let trained = teach(command, &campaign, &split)?;
+            let trained = teach(extent, &campaign, &split)?;
             taught.push(Taught { scenario: name.to_owned(), lessons, trained });
         }
         let trained_on = known.map(|index| taught[index].scenario.clone());
         let columns = columns(&taught[index].trained, &campaign, &Map(recording.static_map()))?;
         let shortfalls = match columns.iter().find(|column| column.name == DEFAULT) {
-            Some(default) => shortfalls(default, &perfection(&scenario, command.seed)?),
+            Some(default) => shortfalls(default, &perfection(&scenario, extent.seed)?),
             None => Vec::new(),
         };
         judged.push(Judged { scenario, columns, shortfalls, trained_on });
@@ -102,10 +102,10 @@ fn same_rows(a: &[Run], b: &[Run]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.name == b.name && a.rows == b.rows)
 }
 
-fn teach(command: &Reproduce, campaign: &Campaign, split: &Split) -> Result<Vec<(Column, Trained)>, Failure> {
+fn teach(extent: &Extent, campaign: &Campaign, split: &Split) -> Result<Vec<(Column, Trained)>, Failure> {
     let learn = |column: Column| {
-        let progress = Restarts::new(command.restarts, column.name);
-        let Reproduce { restarts, passes, seed, .. } = *command;
+        let progress = Restarts::new(extent.restarts, column.name);
+        let Extent { restarts, passes, seed, .. } = *extent;
         let lesson = Lesson { campaign, split, restarts, passes, seed, progress: &progress };
         Ok((column, (column.train)(&lesson)?))
     };

@@ -1,7 +1,7 @@
 //! The same results for other programs.
 
-use super::Reproduce;
 use super::campaigns::Judged;
+use super::extent::Extent;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use trainer::reproduction::claim::{CLAIMS, Claim, Outcome, Verdict};
@@ -11,13 +11,13 @@ use trainer::reproduction::shortfall::Shortfall;
 use trainer::reproduction::trial::{Share, Trial};
 
 /// Everything.
-pub fn json(command: &Reproduce, trials: &[Trial], judged: &[Judged], files: &[PathBuf]) -> Value {
+pub fn json(extent: &Extent, trials: &[Trial], judged: &[Judged], files: &[PathBuf]) -> Value {
     let claims: Vec<Value> = CLAIMS.iter().map(|claim| self::claim(claim, trials)).collect();
     json!({
-        "seed": command.seed,
-        "seeds": command.seeds,
-        "restarts": command.restarts,
-        "passes": command.passes,
+        "seed": extent.seed,
+        "seeds": extent.seeds,
+        "restarts": extent.restarts,
+        "passes": extent.passes,
         "rates": trials.iter().map(rate).collect::<Vec<_>>(),
         "claims": if trials.is_empty() { Vec::new() } else { claims },
         "campaigns": judged.iter().map(campaign).collect::<Vec<_>>(),

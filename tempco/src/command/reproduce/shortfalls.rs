@@ -1,6 +1,6 @@
 //! Why the default is above the paper's IFA-BP where it is: measured, cell by cell.
 
-use super::tables::number;
+use super::number::number;
 use std::fmt::Write;
 use trainer::reproduction::paper::PaperRow;
 use trainer::reproduction::shortfall::Shortfall;

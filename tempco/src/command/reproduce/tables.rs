@@ -1,7 +1,8 @@
 //! Tables 1 and 2 as text: the paper's numbers beside ours, and what such tables do not show.
 
-use super::Reproduce;
 use super::campaigns::Judged;
+use super::extent::Extent;
+use super::number::number;
 use super::shortfalls;
 use crate::table::Table;
 use std::fmt::Write;
@@ -14,8 +15,8 @@ use trainer::reproduction::sweep;
 use trainer::reproduction::trial::Share;
 
 /// All campaigns.
-pub fn text(judged: &[Judged], command: &Reproduce) -> String {
-    let Reproduce { restarts, passes, seed, .. } = command;
+pub fn text(judged: &[Judged], extent: &Extent) -> String {
+    let Extent { restarts, passes, seed, .. } = extent;
     let mut text = format!(
         "Tables 1 and 2: one model for all test data sets, trained on zero-train-* and full-train-* only; {restarts} \
          trainings each, the one of least cost kept; {passes} passes of gradient descent; seed {seed}.\n\
@@ -166,13 +167,4 @@ fn blindness() -> String {
         raw_ppm * 1e-3,
         compensated_ppm * 1e-3
     )
-}
-
-/// Four significant digits at most.
-pub fn number(value: f64) -> String {
-    match value.abs() {
-        size if size < 9.995 => format!("{value:.2}"),
-        size if size < 999.5 => format!("{value:.1}"),
-        _ => format!("{value:.0}"),
-    }
 }

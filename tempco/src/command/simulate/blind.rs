@@ -1,6 +1,6 @@
 //! `--blind`: hides effects in a campaign and puts the truth into an envelope beside it.
 
-use super::{simulate, written};
+use super::measured::{simulate, written};
 use crate::failure::Failure;
 use crate::output::{Kind, Output, Prepared};
 use crate::progress::spinner;

@@ -1,7 +1,8 @@
 //! Looks at another campaign again, with the models that were made of it.
 
 use super::missing;
-use crate::workbench::bench::{Bench, Refusal};
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::Shared;
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -12,9 +13,9 @@ pub struct Request {
     campaign: usize,
 }
 
-pub fn run(bench: &Arc<Bench>, Request { campaign }: Request) -> Result<(), Refusal> {
-    bench.session().idle()?;
-    if bench.change(|session| session.bring_back(campaign)) {
+pub fn run(shared: &Arc<Shared>, Request { campaign }: Request) -> Result<(), Refusal> {
+    shared.session().idle()?;
+    if shared.change(|session| session.bring_back(campaign)) {
         Ok(())
     } else {
         Err(missing("there is no such campaign", "choose one of the list"))

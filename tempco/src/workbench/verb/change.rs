@@ -3,10 +3,11 @@
 use super::{entry, measured};
 use crate::command::change::{Change, Ladder};
 use crate::failure::Failure;
-use crate::workbench::bench::{Bench, Finish, Refusal, Task};
 use crate::workbench::commands;
+use crate::workbench::entry::{Entry, Origin};
 use crate::workbench::job::{Job, Step};
-use crate::workbench::session::{Entry, Origin};
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::{Finish, Shared, Task};
 use crate::workbench::verb::train::keep;
 use serde::Deserialize;
 use std::sync::Arc;
@@ -36,20 +37,20 @@ impl Request {
     }
 }
 
-pub fn add(bench: &Arc<Bench>, request: Request) -> Result<(), Refusal> {
-    change(bench, request, "add", &|change, effect| change.with(effect.clone()))
+pub fn add(shared: &Arc<Shared>, request: Request) -> Result<(), Refusal> {
+    change(shared, request, "add", &|change, effect| change.with(effect.clone()))
 }
 
-pub fn remove(bench: &Arc<Bench>, request: Request) -> Result<(), Refusal> {
-    change(bench, request, "remove", &|change, effect| change.without(effect))
+pub fn remove(shared: &Arc<Shared>, request: Request) -> Result<(), Refusal> {
+    change(shared, request, "remove", &|change, effect| change.without(effect))
 }
 
 type Effects<'a> = &'a dyn Fn(&Change, &EffectChoice) -> Result<Vec<EffectChoice>, Failure>;
 
-fn change(bench: &Arc<Bench>, request: Request, verb: &str, effects: Effects) -> Result<(), Refusal> {
+fn change(shared: &Arc<Shared>, request: Request, verb: &str, effects: Effects) -> Result<(), Refusal> {
     let (number, effect) = request.subject()?;
     let (model, campaign, origin, command) = {
-        let session = bench.session();
+        let session = shared.session();
         let (measured, entry) = (measured(&session)?, entry(&session, number)?);
         let command = commands::change(verb, entry, &effect, &measured.data.command_line());
         let foretold = session.foretold(&command);
@@ -61,7 +62,7 @@ fn change(bench: &Arc<Bench>, request: Request, verb: &str, effects: Effects) ->
     let effects = effects(&Change::of(&model, &campaign)?, &effect)?;
     let what = format!("Training {}", if verb == "add" { "with it" } else { "without it" });
     let work = Box::new(move |job: &Job| climbed(job, &model, &campaign, &effects, origin));
-    bench.start(Task { step: Step::Add, what, command, work })
+    shared.start(Task { step: Step::Add, what, command, work })
 }
 
 fn climbed(

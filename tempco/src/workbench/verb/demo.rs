@@ -3,9 +3,10 @@
 use super::load::{measured, take};
 use crate::command::demo::{self, SCENARIO, SEED};
 use crate::data::{Data, Reading};
-use crate::workbench::bench::{Bench, Refusal, Task};
 use crate::workbench::job::Step;
-use crate::workbench::session::Blind;
+use crate::workbench::measured::Blind;
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::{Shared, Task};
 use crate::workbench::{commands, places};
 use serde::Deserialize;
 use std::sync::Arc;
@@ -18,10 +19,10 @@ pub struct Request {
     pub seed: Option<u64>,
 }
 
-pub fn run(bench: &Arc<Bench>, Request { seed }: Request) -> Result<(), Refusal> {
+pub fn run(shared: &Arc<Shared>, Request { seed }: Request) -> Result<(), Refusal> {
     let seed = seed.unwrap_or(SEED);
     let folder = {
-        let session = bench.session();
+        let session = shared.session();
         session.idle()?;
         places::new_folder(&session.folder, "demo")?
     };
@@ -33,5 +34,10 @@ pub fn run(bench: &Arc<Bench>, Request { seed }: Request) -> Result<(), Refusal>
         let blind = Blind { envelope: made.envelope, command: made_by, noise_ug: made.noise_ug, revealed: None };
         Ok(take(measured(data, made.campaign, Some(blind))))
     });
-    bench.start(Task { step: Step::Load, what: "Simulating a campaign that hides an effect".to_owned(), command, work })
+    shared.start(Task {
+        step: Step::Load,
+        what: "Simulating a campaign that hides an effect".to_owned(),
+        command,
+        work,
+    })
 }

@@ -1,15 +1,16 @@
 //! `tempco diagnose MODEL DATA`
 
 use super::{OfModel, entry, measured};
-use crate::workbench::bench::{Bench, Finish, Refusal, Task};
 use crate::workbench::commands;
 use crate::workbench::job::{Job, Step};
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::{Finish, Shared, Task};
 use std::sync::Arc;
 use trainer::diagnose::diagnose;
 
-pub fn run(bench: &Arc<Bench>, OfModel { model: number }: OfModel) -> Result<(), Refusal> {
+pub fn run(shared: &Arc<Shared>, OfModel { model: number }: OfModel) -> Result<(), Refusal> {
     let (command, model, campaign) = {
-        let session = bench.session();
+        let session = shared.session();
         let (measured, entry) = (measured(&session)?, entry(&session, number)?);
         let command = commands::diagnose(&entry.file, &measured.data.command_line());
         (command, Arc::clone(&entry.model), Arc::clone(&measured.campaign))
@@ -24,5 +25,5 @@ pub fn run(bench: &Arc<Bench>, OfModel { model: number }: OfModel) -> Result<(),
         });
         Ok(finish)
     });
-    bench.start(Task { step: Step::Diagnose, what: "Diagnosing".to_owned(), command, work })
+    shared.start(Task { step: Step::Diagnose, what: "Diagnosing".to_owned(), command, work })
 }

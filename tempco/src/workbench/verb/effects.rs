@@ -1,6 +1,6 @@
 //! `tempco effects`
 
-use crate::workbench::server::json;
+use crate::workbench::json::json;
 use axum::response::Response;
 use firmware_core::effect::{ALL, About, Parameter};
 use serde_json::{Value, json};

@@ -3,9 +3,10 @@
 use super::{OfModel, entry};
 use crate::command::export::write;
 use crate::failure::Failure;
-use crate::workbench::bench::{Bench, Refusal};
+use crate::workbench::entry::Exported;
 use crate::workbench::places;
-use crate::workbench::session::Exported;
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::Shared;
 use axum::extract::{Query, State};
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -14,9 +15,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Writes the calibration in both formats.
-pub fn run(bench: &Arc<Bench>, OfModel { model: number }: OfModel) -> Result<(), Refusal> {
+pub fn run(shared: &Arc<Shared>, OfModel { model: number }: OfModel) -> Result<(), Refusal> {
     let (model, known, paths) = {
-        let session = bench.session();
+        let session = shared.session();
         let entry = entry(&session, number)?;
         let paths = ["hex", "bin"].map(|ending| places::calibration(&session.folder, number, ending));
         (Arc::clone(&entry.model), entry.exported.clone(), paths)
@@ -29,7 +30,7 @@ pub fn run(bench: &Arc<Bench>, OfModel { model: number }: OfModel) -> Result<(),
     write(&paths[1], &bytes)?;
     let [hex, bin] = paths.map(written);
     let exported = Exported { files: [hex?, bin?], address };
-    bench.change(|session| {
+    shared.change(|session| {
         if let Some(entry) = session.entry(number) {
             entry.exported = Some(exported);
         }
@@ -72,8 +73,8 @@ enum Format {
 }
 
 /// `GET /api/download?model=1&format=hex`: what was exported, or the model file.
-pub async fn download(State(bench): State<Arc<Bench>>, Query(wanted): Query<Wanted>) -> Response {
-    match file(&bench, &wanted) {
+pub async fn download(State(shared): State<Arc<Shared>>, Query(wanted): Query<Wanted>) -> Response {
+    match file(&shared, &wanted) {
         Ok((name, bytes)) => {
             let disposition = format!("attachment; filename=\"{name}\"");
             let kind = (header::CONTENT_TYPE, "application/octet-stream".to_owned());
@@ -83,8 +84,8 @@ pub async fn download(State(bench): State<Arc<Bench>>, Query(wanted): Query<Want
     }
 }
 
-fn file(bench: &Bench, Wanted { model, format }: &Wanted) -> Result<(String, Vec<u8>), Refusal> {
-    let session = bench.session();
+fn file(shared: &Shared, Wanted { model, format }: &Wanted) -> Result<(String, Vec<u8>), Refusal> {
+    let session = shared.session();
     let entry = entry(&session, *model)?;
     let nothing = || super::missing("nothing is exported", "export it first");
     let exported = |which: usize| entry.exported.as_ref().map(|one| one.files[which].clone()).ok_or_else(nothing);

@@ -3,9 +3,10 @@
 use crate::command::inspect::RunSummary;
 use crate::data::{Data, HeldOut, Reading};
 use crate::failure::Failure;
-use crate::workbench::bench::{Bench, Finish, Refusal, Task};
 use crate::workbench::job::Step;
-use crate::workbench::session::{Blind, Measured};
+use crate::workbench::measured::{Blind, Measured};
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::{Finish, Shared, Task};
 use crate::workbench::{commands, places, uploads};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -23,16 +24,16 @@ pub struct Request {
     map: Vec<String>,
 }
 
-pub fn run(bench: &Arc<Bench>, Request { upload, files, map }: Request) -> Result<(), Refusal> {
+pub fn run(shared: &Arc<Shared>, Request { upload, files, map }: Request) -> Result<(), Refusal> {
     let folder = {
-        let session = bench.session();
+        let session = shared.session();
         session.idle()?;
         uploads::opened(&session, upload)?
     };
     let files = tables(&folder, &files)?;
     // What was read stays as it was read.
-    bench.session().uploads.retain(|open| *open != folder);
-    start(bench, Data { files, reading: Reading { map, ..Reading::default() } })
+    shared.session().uploads.retain(|open| *open != folder);
+    start(shared, Data { files, reading: Reading { map, ..Reading::default() } })
 }
 
 /// The tables of an upload. What says how to read them is found beside them, not named.
@@ -74,13 +75,13 @@ fn mappings(data: &Data) -> Vec<PathBuf> {
 }
 
 /// Begins to read.
-pub fn start(bench: &Arc<Bench>, data: Data) -> Result<(), Refusal> {
+pub fn start(shared: &Arc<Shared>, data: Data) -> Result<(), Refusal> {
     let command = commands::inspect(&data.command_line());
     let work = Box::new(move |_: &_| {
         let campaign = data.read()?;
         Ok(take(measured(data, campaign, None)))
     });
-    bench.start(Task { step: Step::Load, what: "Reading the campaign".to_owned(), command, work })
+    shared.start(Task { step: Step::Load, what: "Reading the campaign".to_owned(), command, work })
 }
 
 /// A campaign divided as usual.
@@ -92,7 +93,7 @@ pub fn measured(data: Data, campaign: Campaign, blind: Option<Blind>) -> Measure
     Measured { data, mappings, campaign: Arc::new(campaign), runs: Arc::new(runs), held_out, split, blind }
 }
 
-/// Puts it on the bench.
+/// From now on it is the one that is looked at.
 pub fn take(measured: Measured) -> Finish {
     Box::new(move |session| {
         session.take(measured);

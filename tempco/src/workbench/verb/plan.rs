@@ -3,9 +3,10 @@
 use super::{entry, measured};
 use crate::command::plan::{Wish, planned, write};
 use crate::render::plan::text;
-use crate::workbench::bench::{Bench, Finish, Refusal, Task};
+use crate::workbench::entry::Planned;
 use crate::workbench::job::{Job, Step};
-use crate::workbench::session::Planned;
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::{Finish, Shared, Task};
 use crate::workbench::{commands, places};
 use serde::Deserialize;
 use std::sync::Arc;
@@ -22,16 +23,16 @@ pub struct Request {
     hours: Option<f64>,
 }
 
-pub fn run(bench: &Arc<Bench>, Request { model: number, effects, hours }: Request) -> Result<(), Refusal> {
+pub fn run(shared: &Arc<Shared>, Request { model: number, effects, hours }: Request) -> Result<(), Refusal> {
     let (command, model, known, campaign) = {
-        let session = bench.session();
+        let session = shared.session();
         let (measured, entry) = (measured(&session)?, entry(&session, number)?);
         let command = commands::plan(&entry.file, &measured.data.command_line());
         (command, Arc::clone(&entry.model), entry.diagnosis.clone(), Arc::clone(&measured.campaign))
     };
     let wish = Wish { effects, hours };
     let planned_by = format!("{command}{}", wish.words());
-    let command = commands::into(&planned_by, &places::plan(&bench.session().folder, number));
+    let command = commands::into(&planned_by, &places::plan(&shared.session().folder, number));
     let work = Box::new(move |job: &Job| {
         let diagnosis = known.map_or_else(|| diagnose(&model, &campaign, job).map(Arc::new), Ok)?;
         let (plan, best) = planned(&model, &campaign, &diagnosis, &wish, job)?;
@@ -47,5 +48,5 @@ pub fn run(bench: &Arc<Bench>, Request { model: number, effects, hours }: Reques
         });
         Ok(finish)
     });
-    bench.start(Task { step: Step::Plan, what: "Planning the next recording".to_owned(), command, work })
+    shared.start(Task { step: Step::Plan, what: "Planning the next recording".to_owned(), command, work })
 }

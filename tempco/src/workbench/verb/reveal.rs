@@ -3,7 +3,8 @@
 use super::{measured, missing};
 use crate::command::demo::judged;
 use crate::command::reveal::{json, opened};
-use crate::workbench::bench::{Bench, Refusal};
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::Shared;
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -11,9 +12,9 @@ use std::sync::Arc;
 #[serde(deny_unknown_fields)]
 pub struct Request {}
 
-pub fn run(bench: &Arc<Bench>, _: Request) -> Result<(), Refusal> {
+pub fn run(shared: &Arc<Shared>, _: Request) -> Result<(), Refusal> {
     let (envelope, data, diagnosis) = {
-        let session = bench.session();
+        let session = shared.session();
         let measured = measured(&session)?;
         let nothing = || missing("this campaign hides nothing", "`tempco workbench --demo` makes one that does");
         let (blind, data) = measured.blind.as_ref().zip(measured.data.files.first()).ok_or_else(nothing)?;
@@ -24,7 +25,7 @@ pub fn run(bench: &Arc<Bench>, _: Request) -> Result<(), Refusal> {
     let truth = opened(&envelope, &data)?;
     let mut revealed = json(&truth);
     revealed["judgement"] = diagnosis.map(|diagnosis| judged(&truth, &diagnosis)).into();
-    bench.change(|session| {
+    shared.change(|session| {
         if let Some(blind) = session.measured.as_mut().and_then(|measured| measured.blind.as_mut()) {
             blind.revealed = Some(revealed);
         }

@@ -2,7 +2,8 @@
 
 use super::measured;
 use crate::data::HeldOut;
-use crate::workbench::bench::{Bench, Refusal};
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::Shared;
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -13,12 +14,12 @@ pub struct Request {
     hold_out: Option<Vec<String>>,
 }
 
-pub fn run(bench: &Arc<Bench>, Request { hold_out }: Request) -> Result<(), Refusal> {
+pub fn run(shared: &Arc<Shared>, Request { hold_out }: Request) -> Result<(), Refusal> {
     let none = hold_out.as_ref().is_some_and(Vec::is_empty);
     let held_out = HeldOut { hold_out: if none { Some(vec!["none".to_owned()]) } else { hold_out } };
-    let campaign = Arc::clone(&measured(&bench.session())?.campaign);
+    let campaign = Arc::clone(&measured(&shared.session())?.campaign);
     let split = campaign.split(&held_out.choice()).map_err(crate::failure::Failure::from)?;
-    bench.change(|session| {
+    shared.change(|session| {
         if let Some(measured) = &mut session.measured {
             (measured.held_out, measured.split) = (held_out, Ok(split));
         }

@@ -1,6 +1,7 @@
 //! Stops what goes on.
 
-use crate::workbench::bench::{Bench, Refusal};
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::Shared;
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -8,8 +9,8 @@ use std::sync::Arc;
 #[serde(deny_unknown_fields)]
 pub struct Request {}
 
-pub fn run(bench: &Arc<Bench>, _: Request) -> Result<(), Refusal> {
-    bench.change(|session| {
+pub fn run(shared: &Arc<Shared>, _: Request) -> Result<(), Refusal> {
+    shared.change(|session| {
         if let Some(job) = session.running() {
             job.stop();
         }

@@ -3,23 +3,25 @@
 use super::measured;
 use crate::command::train::{Simpler, Training, split};
 use crate::failure::Failure;
-use crate::workbench::bench::{Bench, Finish, Refusal, Task};
 use crate::workbench::commands;
+use crate::workbench::entry::{Entry, Origin};
 use crate::workbench::job::{Job, Step};
-use crate::workbench::session::{Entry, Measured, Origin};
+use crate::workbench::measured::Measured;
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::{Finish, Shared, Task};
 use std::sync::Arc;
 use trainer::train::{TrainSettings, train};
 
-pub fn run(bench: &Arc<Bench>, training: Training) -> Result<(), Refusal> {
+pub fn run(shared: &Arc<Shared>, training: Training) -> Result<(), Refusal> {
     let (measured, origin, command) = {
-        let session = bench.session();
+        let session = shared.session();
         let measured = measured(&session)?.clone();
         let command = commands::train(&measured, &training);
         let foretold = session.foretold(&command);
         (measured, Origin { parent: None, title: training.title(), command }, foretold)
     };
     let work = Box::new(move |job: &Job| trained(job, &measured, &training.settings(), origin));
-    bench.start(Task { step: Step::Train, what: "Training".to_owned(), command, work })
+    shared.start(Task { step: Step::Train, what: "Training".to_owned(), command, work })
 }
 
 fn trained(job: &Job, measured: &Measured, settings: &TrainSettings, origin: Origin) -> Result<Finish, Failure> {
@@ -30,7 +32,7 @@ fn trained(job: &Job, measured: &Measured, settings: &TrainSettings, origin: Ori
     Ok(keep(Entry { simpler: Simpler::all(&trained, campaign, &split), ..entry }))
 }
 
-/// Writes the model and puts it on the bench, unless it was trained in vain.
+/// Writes the model and shows it, unless it was trained in vain.
 pub fn keep(entry: Entry) -> Finish {
     Box::new(move |session| session.add(entry))
 }

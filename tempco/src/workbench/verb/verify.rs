@@ -3,18 +3,19 @@
 use super::{OfModel, entry, measured};
 use crate::command::verify::{Parity, verified};
 use crate::failure::Failure;
-use crate::workbench::bench::{Bench, Finish, Refusal, Task};
 use crate::workbench::commands;
 use crate::workbench::job::{Job, Step};
+use crate::workbench::refusal::Refusal;
+use crate::workbench::shared::{Finish, Shared, Task};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use trainer::campaign::Campaign;
 use trainer::model::Model;
 use trainer::residuals::arranged;
 
-pub fn run(bench: &Arc<Bench>, OfModel { model: number }: OfModel) -> Result<(), Refusal> {
+pub fn run(shared: &Arc<Shared>, OfModel { model: number }: OfModel) -> Result<(), Refusal> {
     let (command, model, campaign) = {
-        let session = bench.session();
+        let session = shared.session();
         let (measured, entry) = (measured(&session)?, entry(&session, number)?);
         let command = commands::verify(&entry.file, &measured.data.command_line());
         (command, Arc::clone(&entry.model), Arc::clone(&measured.campaign))
@@ -29,7 +30,7 @@ pub fn run(bench: &Arc<Bench>, OfModel { model: number }: OfModel) -> Result<(),
         });
         Ok(finish)
     });
-    bench.start(Task { step: Step::Verify, what: "Replaying on the virtual instrument".to_owned(), command, work })
+    shared.start(Task { step: Step::Verify, what: "Replaying on the virtual instrument".to_owned(), command, work })
 }
 
 fn replayed(job: &Job, model: &Model, campaign: &Campaign) -> Result<Parity, Failure> {

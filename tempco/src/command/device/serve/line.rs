@@ -1,10 +1,12 @@
 //! The instrument's end of a line: a socket that one client at a time may use, or a pseudo-terminal.
 
-use super::NAP;
 use crate::failure::Failure;
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::time::Duration;
+
+/// How long the instrument sleeps at most between two looks at its line.
+const NAP: Duration = Duration::from_millis(5);
 
 /// A client that takes nothing for this long has gone.
 const STUCK: Duration = Duration::from_secs(1);

@@ -1,9 +1,9 @@
 //! `tempco workbench DATA`
 
-use super::demo::SEED;
+use super::{First, Settings, serve};
+use crate::command::demo::SEED;
 use crate::data::{Data, Reading, seeds};
 use crate::failure::{Answer, Failure};
-use crate::workbench::{First, Settings, serve};
 use clap::Args;
 use std::path::PathBuf;
 

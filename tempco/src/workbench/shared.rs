@@ -1,30 +1,18 @@
 //! What all requests share: the session behind a lock, one piece of work at a time, and a bell that rings on news.
 
 use super::job::{Job, Step};
+use super::refusal::Refusal;
 use super::session::{Refused, Session};
 use crate::failure::Failure;
-use axum::http::StatusCode;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 
 /// The workbench.
-pub struct Bench {
+pub struct Shared {
     session: Mutex<Session>,
     changed: watch::Sender<u64>,
-}
-
-/// Why a request is not carried out.
-pub struct Refusal {
-    pub status: StatusCode,
-    pub failure: Failure,
-}
-
-impl From<Failure> for Refusal {
-    fn from(failure: Failure) -> Self {
-        Self { status: StatusCode::UNPROCESSABLE_ENTITY, failure }
-    }
 }
 
 /// What is to be done with the session, and with files, once work has ended that nobody stopped.
@@ -41,7 +29,7 @@ pub struct Task {
     pub work: Work,
 }
 
-impl Bench {
+impl Shared {
     pub fn new(folder: PathBuf) -> Self {
         Self { session: Mutex::new(Session::new(folder)), changed: watch::channel(0).0 }
     }
@@ -75,23 +63,12 @@ impl Bench {
         session.begin(Arc::clone(&job));
         drop(session);
         self.changed.send_modify(|version| *version += 1);
-        let bench = Arc::clone(self);
+        let shared = Arc::clone(self);
         std::thread::spawn(move || {
             let outcome = catch_unwind(AssertUnwindSafe(|| work(&job))).unwrap_or_else(|_| Err(fault()));
-            bench.change(|session| conclude(session, &job, outcome));
+            shared.change(|session| conclude(session, &job, outcome));
         });
         Ok(())
-    }
-}
-
-impl Session {
-    /// Refuses while work goes on.
-    pub fn idle(&self) -> Result<(), Refusal> {
-        if !self.is_busy() {
-            return Ok(());
-        }
-        let failure = Failure::new("something else is at work").help("wait for it, or stop it first");
-        Err(Refusal { status: StatusCode::CONFLICT, failure })
     }
 }
 

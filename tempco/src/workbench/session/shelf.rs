@@ -1,17 +1,11 @@
 //! Campaigns that made room for another one, with all that was made of them. Nothing is thrown away.
 
-use super::session::{Entry, Measured, Session};
-
-/// A campaign that is not looked at, its models, and the model that was.
-pub struct Shelved {
-    pub number: usize,
-    pub measured: Measured,
-    pub models: Vec<Entry>,
-    current: Option<usize>,
-}
+use super::Session;
+use crate::workbench::measured::Measured;
+use crate::workbench::shelved::Shelved;
 
 impl Session {
-    /// Puts a campaign on the bench; the one that was there is set aside.
+    /// Looks at a campaign from now on; the one that was there is set aside.
     pub fn take(&mut self, measured: Measured) {
         let number = 1 + self.shelf.iter().map(|one| one.number).chain([self.campaign]).max().unwrap_or_default();
         self.bring(Shelved { number, measured, models: Vec::new(), current: None });
