@@ -25,6 +25,21 @@
 //! Everything that computes is generic over [`Real`]: the device runs it in `f32`, the trainer in
 //! `f64`. The `f32` results have the same bits on every processor: only + − × ÷ and comparisons in a
 //! fixed order, software `exp` from `libm`, and no NaN is ever computed with.
+//!
+//! ```
+//! use firmware_core::{Network, effect};
+//! use protocol::Weights;
+//!
+//! let weights = Weights::from_array(&std::array::from_fn(|i| i as f32 / 41.0 - 0.5));
+//! let on_the_device = Network::<f32>::new(&weights).evaluate(0.25, -0.5);
+//! let in_training = Network::<f64>::new(&weights).evaluate(0.25, -0.5);
+//! assert!((f64::from(on_the_device) - in_training).abs() < 1e-6);
+//!
+//! let lag = effect::about("thermal-lag").expect("an effect of the catalogue");
+//! assert!(effect::find::<f32>(lag.id).is_some() && lag.is_on_device());
+//! ```
+//!
+//! [`Compensator`] shows how a program of one's own measures with a calibration.
 #![no_std]
 
 pub mod activation;

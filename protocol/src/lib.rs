@@ -12,6 +12,24 @@
 //!
 //! This crate evaluates nothing: it knows how a calibration is written down, not what it means.
 //! `docs/wire.md` specifies the bytes; the tests of this crate hold them still.
+//!
+//! A host asks, and the instrument understands it byte by byte:
+//!
+//! ```
+//! use protocol::{Decoder, Envelope, Request, encode_request};
+//!
+//! let asked = Envelope { sequence: 7, body: Request::Identify };
+//! let line = encode_request(&asked)?;
+//! let mut decoder = Decoder::new();
+//! let mut heard = line.iter().filter_map(|byte| decoder.push::<Request>(*byte));
+//! assert_eq!(heard.next(), Some(Ok(asked)));
+//!
+//! // A bit that changes on the way is noticed.
+//! let mut spoilt = line.clone();
+//! spoilt[1] ^= 1;
+//! assert!(spoilt.iter().filter_map(|byte| decoder.push::<Request>(*byte)).all(|message| message.is_err()));
+//! # Ok::<(), protocol::FrameError>(())
+//! ```
 #![no_std]
 
 mod blob;
