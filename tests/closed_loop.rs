@@ -14,7 +14,7 @@ use trainer::replay::replay;
 use trainer::sensitivity::over_domain;
 use trainer::train::{TrainSettings, Trained, train};
 
-struct Case {
+struct Calibrated {
     campaign: Campaign,
     trained: Trained,
     floor_ug: f64,
@@ -22,7 +22,7 @@ struct Case {
 }
 
 /// A clean campaign, through a file as a user's would come, and a model of it.
-fn clean(seed: u64) -> Case {
+fn clean(seed: u64) -> Calibrated {
     let scenario = Scenario::preset("clean").expect("a built-in scenario");
     let recording = simulation::simulate(&scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
     let folder = TempDir::new().expect("a folder");
@@ -33,7 +33,7 @@ fn clean(seed: u64) -> Case {
     let settings = TrainSettings { restarts: 6, ..TrainSettings::new(seed) };
     let trained = train(&campaign, &split, &settings, &Quiet).expect("a model");
     let truth = StaticMap::new(&scenario.device);
-    Case { campaign, trained, floor_ug: recording.noise_floor_ug(), truth }
+    Calibrated { campaign, trained, floor_ug: recording.noise_floor_ug(), truth }
 }
 
 /// The first claim of the product: within 10 % of the noise that the simulation states.
@@ -42,13 +42,13 @@ const NEAR_THE_FLOOR: f64 = 1.10;
 #[test]
 fn the_held_out_residual_is_the_noise_and_the_slope_is_the_sensors() {
     for seed in 1..=5 {
-        let case = clean(seed);
-        let comparison = compare(&case.trained.model, &case.campaign).expect("a comparison");
+        let sensor = clean(seed);
+        let comparison = compare(&sensor.trained.model, &sensor.campaign).expect("a comparison");
         assert!(comparison.held_out);
-        let ratio = comparison.residual_ug / case.floor_ug;
+        let ratio = comparison.residual_ug / sensor.floor_ug;
         assert!(ratio < NEAR_THE_FLOOR, "seed {seed}: {ratio:.3} times the noise floor");
-        let slope = over_domain(&case.trained.model, |delta_f_uhz, temperature_uc| {
-            case.truth.slope_g_per_hz(delta_f_uhz * 1e-6, temperature_uc * 1e-6)
+        let slope = over_domain(&sensor.trained.model, |delta_f_uhz, temperature_uc| {
+            sensor.truth.slope_g_per_hz(delta_f_uhz * 1e-6, temperature_uc * 1e-6)
         });
         assert!(slope.worst < 1000.0, "seed {seed}: {slope:?}");
     }
@@ -56,11 +56,11 @@ fn the_held_out_residual_is_the_noise_and_the_slope_is_the_sensors() {
 
 #[test]
 fn every_reading_of_the_virtual_instrument_has_the_hosts_bits() {
-    let case = clean(9);
-    let blob = case.trained.model.to_blob().expect("a blob");
+    let sensor = clean(9);
+    let blob = sensor.trained.model.to_blob().expect("a blob");
     let mut instrument = VirtualInstrument::new("");
     instrument.upload(&blob).expect("uploaded");
-    for run in &case.campaign.runs {
+    for run in &sensor.campaign.runs {
         let samples: Vec<_> = run.rows.iter().map(|row| row.sample).collect();
         instrument.exchange(Request::Restart).expect("restarted");
         let there = instrument.replay(&samples).expect("readings");

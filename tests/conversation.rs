@@ -4,18 +4,18 @@
 //! Thousands of conversations, always the same ones. Each is a host that works towards a calibration of its choice and
 //! is interrupted: by other requests, repeated numbers, broken frames, time, restarts, a flash that takes nothing.
 
-#[path = "conversation/bench.rs"]
-mod bench;
 #[path = "conversation/pool.rs"]
 mod pool;
 #[path = "conversation/reference.rs"]
 mod reference;
+#[path = "conversation/talk.rs"]
+mod talk;
 
-use bench::{Bench, Seen};
 use firmware_core::FactoryKey;
 use pool::Pool;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use talk::{Seen, Talk};
 
 const CONVERSATIONS: u64 = 1_000;
 const STEPS: usize = 120;
@@ -45,11 +45,11 @@ fn converse(key: FactoryKey) -> Seen {
     let mut seen = Seen::default();
     for seed in 0..CONVERSATIONS {
         let mut dice = Dice(Xoshiro256PlusPlus::seed_from_u64(seed));
-        let mut bench = Bench::new(&pool, seed, &mut dice);
+        let mut talk = Talk::new(&pool, seed, &mut dice);
         for _ in 0..STEPS {
-            bench.step(&mut dice, &mut seen);
+            talk.step(&mut dice, &mut seen);
         }
-        bench.look_at_everything(&mut seen);
+        talk.look_at_everything(&mut seen);
     }
     seen
 }

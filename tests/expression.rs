@@ -51,13 +51,13 @@ hold_s = 900
 record_every_s = 10
 "#;
 
-struct Case {
+struct Recorded {
     campaign: Campaign,
     floor_ug: f64,
 }
 
 /// A simulated campaign with an effect put in by hand, so that it shares no formula with what is tested.
-static CASE: LazyLock<Case> = LazyLock::new(|| {
+static RECORDED: LazyLock<Recorded> = LazyLock::new(|| {
     let scenario = Scenario::from_toml(SCENARIO).expect("a scenario");
     let recording = simulation::simulate(&scenario, 5, &mut |_| ControlFlow::Continue(())).expect("a recording");
     let folder = TempDir::new().expect("a folder");
@@ -66,7 +66,7 @@ static CASE: LazyLock<Case> = LazyLock::new(|| {
     let plain = Campaign::read(&[file], &ReadOptions::default()).expect("a campaign");
     let runs = plain.runs.into_iter().enumerate().map(|(index, run)| hide(run, index)).collect();
     let campaign = Campaign::new(runs, vec!["pressure_pa".to_owned(), "supply_v".to_owned()], plain.quantity);
-    Case { campaign, floor_ug: recording.noise_floor_ug() }
+    Recorded { campaign, floor_ug: recording.noise_floor_ug() }
 });
 
 /// Gives a run a supply that steps up and down, and the bias that comes of it.
@@ -90,13 +90,13 @@ fn hide(mut run: Run, index: usize) -> Run {
 }
 
 fn model(effects: Vec<EffectChoice>) -> Model {
-    let split = CASE.campaign.split(&HoldOut::LastOfEachKind).expect("a split");
+    let split = RECORDED.campaign.split(&HoldOut::LastOfEachKind).expect("a split");
     let settings = TrainSettings { restarts: 3, effects, ..TrainSettings::new(1) };
-    train(&CASE.campaign, &split, &settings, &Quiet).expect("a model").model
+    train(&RECORDED.campaign, &split, &settings, &Quiet).expect("a model").model
 }
 
 fn residual_ug(model: &Model) -> f64 {
-    compare(model, &CASE.campaign).expect("a comparison").residual_ug
+    compare(model, &RECORDED.campaign).expect("a comparison").residual_ug
 }
 
 /// The expression's model, trained once for all tests.
@@ -107,9 +107,9 @@ fn what_is_hidden_is_found_and_the_residual_falls_to_the_noise() {
     let alone = residual_ug(&model(Vec::new()));
     let catalogue = residual_ug(&model(vec![EffectChoice::expression("temperature_rate")]));
     let with = residual_ug(&MODEL);
-    println!("alone {alone:.2} µg, rate {catalogue:.2} µg, with {with:.2} µg, floor {:.2} µg", CASE.floor_ug);
+    println!("alone {alone:.2} µg, rate {catalogue:.2} µg, with {with:.2} µg, floor {:.2} µg", RECORDED.floor_ug);
     println!("{:?}", MODEL.effects);
-    assert!(with < 1.1 * CASE.floor_ug && alone > 5.0 * with && catalogue > 1.5 * with);
+    assert!(with < 1.1 * RECORDED.floor_ug && alone > 5.0 * with && catalogue > 1.5 * with);
     let effect = &MODEL.effects[0];
     assert_eq!(
         (effect.expression.as_deref(), MODEL.channels.as_slice()),
@@ -122,7 +122,7 @@ fn what_is_hidden_is_found_and_the_residual_falls_to_the_noise() {
 #[test]
 fn the_instrument_gives_the_hosts_bits_through_the_stored_calibration() {
     let blob = Blob::from_bytes(&MODEL.to_bytes().expect("it fits")).expect("sound bytes");
-    let campaign = CASE.campaign.arranged(&["supply_v"]).expect("it has the channel");
+    let campaign = RECORDED.campaign.arranged(&["supply_v"]).expect("it has the channel");
     let mut instrument = VirtualInstrument::new("");
     instrument.upload(&blob).expect("uploaded");
     for run in &campaign.runs {
@@ -147,7 +147,7 @@ fn a_model_file_with_it_is_read_as_it_was_written_and_trained_on_from_where_it_i
 #[test]
 fn several_expressions_share_a_model_and_a_time_constant_is_fitted_only_where_there_is_a_past() {
     let two = model(vec![EffectChoice::expression(EXPRESSION), EffectChoice::expression("(supply_v - 5) * level_g")]);
-    assert!(residual_ug(&two) < 1.1 * CASE.floor_ug);
+    assert!(residual_ug(&two) < 1.1 * RECORDED.floor_ug);
     let names = |index: usize| two.effects[index].parameters.keys().map(String::as_str).collect::<Vec<_>>();
     assert_eq!((names(0), names(1)), (vec!["amplitude_g", "tau_s"], vec!["amplitude_g"]));
     assert_eq!(two.to_blob().expect("a blob").terms[1].parameters.len(), 2);
@@ -164,10 +164,10 @@ fn the_unit_of_an_expression_does_not_matter() {
 
 #[test]
 fn what_cannot_be_learnt_is_refused_before_training() {
-    let split = CASE.campaign.split(&HoldOut::LastOfEachKind).expect("a split");
+    let split = RECORDED.campaign.split(&HoldOut::LastOfEachKind).expect("a split");
     let refusal = |choice: EffectChoice| {
         let settings = TrainSettings { effects: vec![choice], ..TrainSettings::new(1) };
-        check(&CASE.campaign, &split, &settings).expect_err("it can't be learnt")
+        check(&RECORDED.campaign, &split, &settings).expect_err("it can't be learnt")
     };
     assert!(matches!(refusal(EffectChoice::named("expression")), TrainError::Effect(EffectError::NoExpression)));
     assert!(matches!(refusal(EffectChoice::expression("pressure_pa")), TrainError::Effect(EffectError::Constant(_))));

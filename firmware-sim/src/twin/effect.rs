@@ -111,6 +111,6 @@ effects! {
 }
 
 #[cfg(test)]
-mod bench;
+mod one_effect;
 #[cfg(test)]
 mod tests;

@@ -91,7 +91,7 @@ impl Effect for Aged {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
@@ -102,9 +102,9 @@ mod tests {
             (Aging { log_ug: 60.0, ..off.clone() }, 60.0 * 31.0_f64.ln()),
             (Aging { exponential_ug: 300.0, ..off }, 300.0 * (1.0 - (-1.0_f64).exp())),
         ] {
-            let mut bench = Bench::new(&law);
-            bench.now.age_days = 30.0;
-            let seen = bench.look();
+            let mut alone = OneEffect::new(&law);
+            alone.now.age_days = 30.0;
+            let seen = alone.look();
             assert!((seen.bias_ug - worked_ug).abs() < 1e-3, "{law:?}: {seen:?}");
         }
     }

@@ -72,15 +72,15 @@ impl Effect for Leaking {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn a_tumble_shows_a_cosine_and_a_sine_of_twice_the_angle() {
-        let mut bench = Bench::new(&CrossAxis::default());
+        let mut alone = OneEffect::new(&CrossAxis::default());
         for (angle_deg, worked_ug) in [(0.0, 100.0), (45.0, 70.710_678 + 10.0), (90.0, 0.0), (180.0, -100.0)] {
-            bench.apply(angle_deg);
-            assert!((bench.look().bias_ug - worked_ug).abs() < 1e-5, "{angle_deg}°");
+            alone.apply(angle_deg);
+            assert!((alone.look().bias_ug - worked_ug).abs() < 1e-5, "{angle_deg}°");
         }
     }
 }

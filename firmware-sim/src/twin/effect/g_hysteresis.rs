@@ -70,17 +70,17 @@ impl Effect for Remembering {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn after_1_g_the_level_reads_high_and_forgets_in_200_s() {
-        let mut bench = Bench::new(&GHysteresis::default());
-        bench.apply(90.0);
-        bench.pass(5000.0);
-        bench.apply(0.0);
-        assert!((bench.look().bias_ug - 20.0).abs() < 1e-3);
-        bench.pass(200.0);
-        assert!((bench.look().bias_ug - 20.0 / std::f64::consts::E).abs() < 1e-3);
+        let mut alone = OneEffect::new(&GHysteresis::default());
+        alone.apply(90.0);
+        alone.pass(5000.0);
+        alone.apply(0.0);
+        assert!((alone.look().bias_ug - 20.0).abs() < 1e-3);
+        alone.pass(200.0);
+        assert!((alone.look().bias_ug - 20.0 / std::f64::consts::E).abs() < 1e-3);
     }
 }

@@ -74,15 +74,15 @@ impl Effect for Swelling {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn from_40_to_85_percent_the_bias_swells_in_20_hours() {
-        let mut bench = Bench::new(&Humidity::default());
-        bench.now.humidity_pct = 85.0;
-        assert!(bench.look().bias_ug.abs() < 1e-6);
-        bench.pass(72_000.0);
-        assert!((bench.look().bias_ug - 225.0 * (1.0 - (-1.0_f64).exp())).abs() < 0.01);
+        let mut alone = OneEffect::new(&Humidity::default());
+        alone.now.humidity_pct = 85.0;
+        assert!(alone.look().bias_ug.abs() < 1e-6);
+        alone.pass(72_000.0);
+        assert!((alone.look().bias_ug - 225.0 * (1.0 - (-1.0_f64).exp())).abs() < 0.01);
     }
 }

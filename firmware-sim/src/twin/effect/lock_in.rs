@@ -63,20 +63,20 @@ impl Effect for Locking {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn at_76_hz_the_pull_is_the_worked_26_millihertz() {
-        let seen = Bench::new(&LockIn::default()).look();
+        let seen = OneEffect::new(&LockIn::default()).look();
         assert!((seen.bias_ug + 0.315e3).abs() < 1.0 && seen.mean_hz.abs() < 1e-9, "{seen:?}");
     }
 
     #[test]
     fn near_zero_difference_the_forks_run_as_one() {
         let mut forks = Forks { f1_hz: 41_200.5, f2_hz: 41_199.0 };
-        let bench = Bench::new(&LockIn::default());
-        bench.effect.pull(&bench.now, &mut forks);
+        let alone = OneEffect::new(&LockIn::default());
+        alone.effect.pull(&alone.now, &mut forks);
         assert!(forks.delta_hz().abs() < 1e-9 && (forks.f1_hz - 41_199.75).abs() < 1e-9);
     }
 }

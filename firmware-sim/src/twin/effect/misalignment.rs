@@ -66,15 +66,15 @@ impl Effect for Askew {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn level_it_reads_the_angle_upright_the_square_of_it() {
-        let mut bench = Bench::new(&Misalignment { angle_urad: 2000.0, ..Misalignment::default() });
+        let mut alone = OneEffect::new(&Misalignment { angle_urad: 2000.0, ..Misalignment::default() });
         for (angle_deg, worked_ug) in [(0.0, 2000.0), (90.0, -2.0), (180.0, -2000.0)] {
-            bench.apply(angle_deg);
-            assert!((bench.look().bias_ug - worked_ug).abs() < 0.002, "{angle_deg}°");
+            alone.apply(angle_deg);
+            assert!((alone.look().bias_ug - worked_ug).abs() < 0.002, "{angle_deg}°");
         }
     }
 }

@@ -80,27 +80,27 @@ impl Effect for Crossing {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn the_extremes_are_one_width_beside_the_crossing() {
         for (temperature_c, worked_ug) in [(28.0, -300.0), (30.0, 0.0), (32.0, 300.0)] {
-            let mut bench = Bench::new(&ModeCrossing::default());
-            bench.ramp(temperature_c - 25.0, 60.0);
+            let mut alone = OneEffect::new(&ModeCrossing::default());
+            alone.ramp(temperature_c - 25.0, 60.0);
             // The first fork's slope is 1.7 % below the mean slope that defines the width.
-            assert!((bench.look().bias_ug - worked_ug).abs() < 0.3, "{temperature_c} °C: {:?}", bench.look());
+            assert!((alone.look().bias_ug - worked_ug).abs() < 0.3, "{temperature_c} °C: {:?}", alone.look());
         }
     }
 
     #[test]
     fn one_g_moves_the_crossing_by_17_k() {
-        let mut bench = Bench::new(&ModeCrossing::default());
-        bench.apply(90.0);
-        let slope = |at_c: f64, bench: &mut Bench| {
-            bench.now.sensor_c = at_c;
-            bench.look().bias_ug
+        let mut alone = OneEffect::new(&ModeCrossing::default());
+        alone.apply(90.0);
+        let slope = |at_c: f64, alone: &mut OneEffect| {
+            alone.now.sensor_c = at_c;
+            alone.look().bias_ug
         };
-        assert!(slope(46.0, &mut bench) < -100.0 && slope(49.0, &mut bench) > 100.0);
+        assert!(slope(46.0, &mut alone) < -100.0 && slope(49.0, &mut alone) > 100.0);
     }
 }

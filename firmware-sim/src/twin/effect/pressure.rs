@@ -65,13 +65,13 @@ impl Effect for Pressed {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn half_an_atmosphere_less_is_150_micro_g_less() {
-        let mut bench = Bench::new(&Pressure::default());
-        bench.now.pressure_pa -= 50_000.0;
-        assert!((bench.look().bias_ug + 150.0).abs() < 1e-3);
+        let mut alone = OneEffect::new(&Pressure::default());
+        alone.now.pressure_pa -= 50_000.0;
+        assert!((alone.look().bias_ug + 150.0).abs() < 1e-3);
     }
 }

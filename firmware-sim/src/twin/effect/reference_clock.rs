@@ -81,13 +81,13 @@ impl Effect for Ticking {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn one_ppm_is_41_millihertz_in_the_mean_and_below_a_micro_g_in_the_bias() {
         let of = ReferenceClock { offset_ppm: 1.0, retrace_ppm: 0.0, ppm_per_day: 0.0 };
-        let seen = Bench::new(&of).look();
+        let seen = OneEffect::new(&of).look();
         assert!((seen.mean_hz + 0.0412).abs() < 1e-6 && (seen.bias_ug + 0.910).abs() < 0.001, "{seen:?}");
     }
 }

@@ -58,15 +58,15 @@ impl Effect for Aged {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn after_100_days_1_g_reads_100_micro_g_more_and_0_g_the_same() {
-        let mut bench = Bench::new(&ScaleFactorAging::default());
-        bench.now.age_days = 100.0;
-        assert!(bench.look().bias_ug.abs() < 1e-6);
-        bench.apply(90.0);
-        assert!((bench.look().bias_ug - 100.0).abs() < 1e-3);
+        let mut alone = OneEffect::new(&ScaleFactorAging::default());
+        alone.now.age_days = 100.0;
+        assert!(alone.look().bias_ug.abs() < 1e-6);
+        alone.apply(90.0);
+        assert!((alone.look().bias_ug - 100.0).abs() < 1e-3);
     }
 }

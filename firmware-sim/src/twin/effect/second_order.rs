@@ -58,15 +58,15 @@ impl Effect for Bent {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn both_ends_read_high_and_the_middle_right() {
-        let mut bench = Bench::new(&SecondOrder::default());
+        let mut alone = OneEffect::new(&SecondOrder::default());
         for (angle_deg, worked_ug) in [(0.0, 0.0), (30.0, 2.5), (90.0, 10.0), (270.0, 10.0)] {
-            bench.apply(angle_deg);
-            assert!((bench.look().bias_ug - worked_ug).abs() < 1e-6, "{angle_deg}°");
+            alone.apply(angle_deg);
+            assert!((alone.look().bias_ug - worked_ug).abs() < 1e-6, "{angle_deg}°");
         }
     }
 }

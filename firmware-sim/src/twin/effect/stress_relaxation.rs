@@ -93,16 +93,16 @@ impl Effect for Creeping {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn after_35_k_the_bias_creeps_back_in_100_minutes() {
-        let mut bench = Bench::new(&StressRelaxation::default());
-        bench.ramp(35.0, 1.0);
-        assert!((bench.look().bias_ug - 175.0).abs() < 0.4, "{:?}", bench.look());
-        bench.pass(6000.0);
-        assert!((bench.look().bias_ug - 175.0 / std::f64::consts::E).abs() < 0.2);
+        let mut alone = OneEffect::new(&StressRelaxation::default());
+        alone.ramp(35.0, 1.0);
+        assert!((alone.look().bias_ug - 175.0).abs() < 0.4, "{:?}", alone.look());
+        alone.pass(6000.0);
+        assert!((alone.look().bias_ug - 175.0 / std::f64::consts::E).abs() < 0.2);
     }
 
     #[test]

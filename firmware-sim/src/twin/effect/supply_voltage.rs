@@ -85,14 +85,14 @@ impl Effect for Supplied {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn five_percent_more_is_250_micro_g_and_ten_times_that_in_the_mean() {
-        let mut bench = Bench::new(&SupplyVoltage::default());
-        bench.now.supply_v = 5.25;
-        let seen = bench.look();
+        let mut alone = OneEffect::new(&SupplyVoltage::default());
+        alone.now.supply_v = 5.25;
+        let seen = alone.look();
         assert!((seen.bias_ug - 250.0).abs() < 1e-3, "{seen:?}");
         assert!((seen.mean_hz - 10.0 * 250e-6 * 83.5005).abs() < 1e-4, "{seen:?}");
     }

@@ -75,14 +75,14 @@ impl Effect for Uneven {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn one_kelvin_a_minute_is_100_micro_g_and_the_sum_stays() {
-        let mut bench = Bench::new(&ThermalGradient::default());
-        bench.ramp(10.0, 600.0);
-        let seen = bench.look();
+        let mut alone = OneEffect::new(&ThermalGradient::default());
+        alone.ramp(10.0, 600.0);
+        let seen = alone.look();
         // S_g at 35 °C is 1 % above that at 25 °C.
         assert!((seen.bias_ug - 100.0).abs() < 1.5, "{seen:?}");
         // 3.5 mK between the forks and 2.4 Hz/K, halved twice and opposed: what is left is the mismatch.
@@ -91,8 +91,8 @@ mod tests {
 
     #[test]
     fn at_rest_there_is_nothing() {
-        let mut bench = Bench::new(&ThermalGradient::default());
-        bench.pass(10.0);
-        assert!(bench.look().bias_ug.abs() < 1e-6);
+        let mut alone = OneEffect::new(&ThermalGradient::default());
+        alone.pass(10.0);
+        assert!(alone.look().bias_ug.abs() < 1e-6);
     }
 }

@@ -72,19 +72,19 @@ impl Effect for Playing {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn up_and_down_differ_by_twice_the_half_width_at_any_rate() {
         for seconds in [60.0, 6000.0] {
-            let mut bench = Bench::new(&ThermalHysteresis::default());
-            bench.ramp(35.0, seconds);
-            bench.ramp(-20.0, seconds);
-            let down_ug = bench.look().bias_ug;
-            bench.ramp(-35.0, seconds);
-            bench.ramp(35.0, seconds);
-            let up_ug = bench.look().bias_ug;
+            let mut alone = OneEffect::new(&ThermalHysteresis::default());
+            alone.ramp(35.0, seconds);
+            alone.ramp(-20.0, seconds);
+            let down_ug = alone.look().bias_ug;
+            alone.ramp(-35.0, seconds);
+            alone.ramp(35.0, seconds);
+            let up_ug = alone.look().bias_ug;
             // The map at 40 °C reads a frequency shift with its own scale factor, 0.09 % above nominal.
             assert!((down_ug - 100.0).abs() < 0.2 && (up_ug + 100.0).abs() < 0.2, "{down_ug} {up_ug}");
         }
@@ -92,9 +92,9 @@ mod tests {
 
     #[test]
     fn a_small_excursion_within_the_play_is_reversible() {
-        let mut bench = Bench::new(&ThermalHysteresis::default());
-        bench.ramp(8.0, 60.0);
-        bench.ramp(-8.0, 60.0);
-        assert!(bench.look().bias_ug.abs() < 1e-6);
+        let mut alone = OneEffect::new(&ThermalHysteresis::default());
+        alone.ramp(8.0, 60.0);
+        alone.ramp(-8.0, 60.0);
+        assert!(alone.look().bias_ug.abs() < 1e-6);
     }
 }

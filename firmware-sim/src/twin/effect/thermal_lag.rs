@@ -77,14 +77,14 @@ impl Effect for Lagging {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn behind_one_kelvin_a_minute_the_reading_is_off_by_half_a_milli_g() {
-        let mut bench = Bench::new(&ThermalLag::default());
-        bench.ramp(10.0, 600.0);
-        let seen = bench.look();
+        let mut alone = OneEffect::new(&ThermalLag::default());
+        alone.ramp(10.0, 600.0);
+        let seen = alone.look();
         // −B_T·τ·dT/dt, with 0.901 mg/K at the 35 °C reached; the mean frequency by 2.4 Hz/K.
         assert!((seen.bias_ug + 0.901e3 * 35.0 / 60.0).abs() < 5.0, "{seen:?}");
         assert!((seen.mean_hz - 2.425 * 35.0 / 60.0).abs() < 0.01, "{seen:?}");
@@ -93,10 +93,10 @@ mod tests {
     #[test]
     fn a_slow_branch_is_left_behind_after_the_soak() {
         let slow = ThermalLag { slow_share: 0.1, slow_tau_s: 600.0, ..ThermalLag::default() };
-        let mut bench = Bench::new(&slow);
-        bench.ramp(20.0, 1.0);
-        bench.pass(1200.0);
+        let mut alone = OneEffect::new(&slow);
+        alone.ramp(20.0, 1.0);
+        alone.pass(1200.0);
         let behind_k = 0.1 * 20.0 * (-2.0_f64).exp();
-        assert!((bench.look().bias_ug / (-0.9e3 * behind_k) - 1.0).abs() < 0.02, "{:?}", bench.look());
+        assert!((alone.look().bias_ug / (-0.9e3 * behind_k) - 1.0).abs() < 0.02, "{:?}", alone.look());
     }
 }

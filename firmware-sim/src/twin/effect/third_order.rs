@@ -58,15 +58,15 @@ impl Effect for Bent {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn the_ends_read_off_in_opposite_directions() {
-        let mut bench = Bench::new(&ThirdOrder { ug_per_g3: 8.0 });
+        let mut alone = OneEffect::new(&ThirdOrder { ug_per_g3: 8.0 });
         for (angle_deg, worked_ug) in [(0.0, 0.0), (30.0, 1.0), (90.0, 8.0), (270.0, -8.0)] {
-            bench.apply(angle_deg);
-            assert!((bench.look().bias_ug - worked_ug).abs() < 1e-6, "{angle_deg}°");
+            alone.apply(angle_deg);
+            assert!((alone.look().bias_ug - worked_ug).abs() < 1e-6, "{angle_deg}°");
         }
     }
 }

@@ -66,16 +66,16 @@ impl Effect for TurnedOn {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn every_run_has_its_own_constant() {
-        let mut bench = Bench::new(&TurnOn::default());
+        let mut alone = OneEffect::new(&TurnOn::default());
         let runs: Vec<f64> = (0..2000)
             .map(|_| {
-                bench.effect.begin_run();
-                bench.look().bias_ug
+                alone.effect.begin_run();
+                alone.look().bias_ug
             })
             .collect();
         let rms = (runs.iter().map(|x| x * x).sum::<f64>() / 2000.0).sqrt();

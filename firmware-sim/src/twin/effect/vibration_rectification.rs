@@ -58,13 +58,13 @@ impl Effect for Shaken {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn two_g_rms_are_80_micro_g() {
-        let mut bench = Bench::new(&VibrationRectification::default());
-        bench.now.vibration_g2 = 4.0;
-        assert!((bench.look().bias_ug - 80.0).abs() < 1e-4);
+        let mut alone = OneEffect::new(&VibrationRectification::default());
+        alone.now.vibration_g2 = 4.0;
+        assert!((alone.look().bias_ug - 80.0).abs() < 1e-4);
     }
 }

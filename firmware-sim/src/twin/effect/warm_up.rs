@@ -81,27 +81,27 @@ impl Effect for Warming {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn the_electronics_settle_in_ten_minutes_and_begin_anew() {
-        let mut bench = Bench::new(&WarmUp::default());
-        assert!((bench.look().bias_ug - 140.0).abs() < 1e-3);
-        bench.pass(600.0);
-        assert!((bench.look().bias_ug - 140.0 / std::f64::consts::E).abs() < 1e-3);
-        bench.now.power_on_s = Some(0.0);
-        assert!((bench.look().bias_ug - 140.0).abs() < 1e-3);
+        let mut alone = OneEffect::new(&WarmUp::default());
+        assert!((alone.look().bias_ug - 140.0).abs() < 1e-3);
+        alone.pass(600.0);
+        assert!((alone.look().bias_ug - 140.0 / std::f64::consts::E).abs() < 1e-3);
+        alone.now.power_on_s = Some(0.0);
+        assert!((alone.look().bias_ug - 140.0).abs() < 1e-3);
     }
 
     #[test]
     fn the_forks_stay_warm_through_a_short_power_off() {
         let of = WarmUp { bias_ug: 0.0, self_heating_k: 0.2, ..WarmUp::default() };
-        let mut bench = Bench::new(&of);
-        bench.pass(9000.0);
-        assert!((bench.look().mean_hz + 0.2 * 2.406).abs() < 0.001, "{:?}", bench.look());
-        bench.now.power_on_s = None;
-        bench.pass(900.0);
-        assert!((bench.look().mean_hz + 0.2 * 2.406 / std::f64::consts::E).abs() < 0.001);
+        let mut alone = OneEffect::new(&of);
+        alone.pass(9000.0);
+        assert!((alone.look().mean_hz + 0.2 * 2.406).abs() < 0.001, "{:?}", alone.look());
+        alone.now.power_on_s = None;
+        alone.pass(900.0);
+        assert!((alone.look().mean_hz + 0.2 * 2.406 / std::f64::consts::E).abs() < 0.001);
     }
 }

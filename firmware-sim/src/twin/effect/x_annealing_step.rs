@@ -68,16 +68,16 @@ impl Effect for Annealed {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn the_first_visit_to_60_c_leaves_70_micro_g_and_the_second_nothing() {
-        let mut bench = Bench::new(&AnnealingStep::default());
+        let mut alone = OneEffect::new(&AnnealingStep::default());
         for _ in 0..2 {
-            bench.ramp(35.0, 600.0);
-            bench.ramp(-35.0, 600.0);
-            assert!((bench.look().bias_ug - 70.0).abs() < 1e-6);
+            alone.ramp(35.0, 600.0);
+            alone.ramp(-35.0, 600.0);
+            assert!((alone.look().bias_ug - 70.0).abs() < 1e-6);
         }
     }
 }

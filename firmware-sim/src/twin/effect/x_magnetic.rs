@@ -80,19 +80,19 @@ impl Effect for Turning {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn it_holds_still_for_a_pose_and_scatters_from_pose_to_pose() {
-        let mut bench = Bench::new(&Magnetic::default());
+        let mut alone = OneEffect::new(&Magnetic::default());
         let mut squares = 0.0;
         for pose in 0..2000 {
-            bench.now.pose = pose;
-            bench.pass(1.0);
-            let first_ug = bench.look().bias_ug;
-            bench.pass(5.0);
-            assert!((bench.look().bias_ug - first_ug).abs() < 1e-9);
+            alone.now.pose = pose;
+            alone.pass(1.0);
+            let first_ug = alone.look().bias_ug;
+            alone.pass(5.0);
+            assert!((alone.look().bias_ug - first_ug).abs() < 1e-9);
             squares += first_ug * first_ug;
         }
         // 20 µg·√½; the cosine's square has a standard deviation of 0.35: four standard errors.

@@ -74,16 +74,16 @@ impl Effect for Kinked {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn both_directions_give_the_worked_values() {
         let all = OddQuadratic { bias_asymmetry_ug: 8.0, scale_factor_asymmetry_ppm: 20.0, ug_per_g2: 4.0 };
-        let mut bench = Bench::new(&all);
+        let mut alone = OneEffect::new(&all);
         for (angle_deg, worked_ug) in [(0.0, 0.0), (30.0, 4.0 + 5.0 + 1.0), (270.0, -4.0 + 10.0 - 4.0)] {
-            bench.apply(angle_deg);
-            assert!((bench.look().bias_ug - worked_ug).abs() < 1e-6, "{angle_deg}°");
+            alone.apply(angle_deg);
+            assert!((alone.look().bias_ug - worked_ug).abs() < 1e-6, "{angle_deg}°");
         }
     }
 }

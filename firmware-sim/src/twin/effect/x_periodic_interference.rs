@@ -67,14 +67,14 @@ impl Effect for Swinging {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn half_a_period_later_it_is_the_opposite() {
-        let mut bench = Bench::new(&PeriodicInterference::default());
-        let before_ug = bench.look().bias_ug;
-        bench.pass(206.0);
-        assert!((bench.look().bias_ug + before_ug).abs() < 1e-6 && before_ug.abs() > 0.1);
+        let mut alone = OneEffect::new(&PeriodicInterference::default());
+        let before_ug = alone.look().bias_ug;
+        alone.pass(206.0);
+        assert!((alone.look().bias_ug + before_ug).abs() < 1e-6 && before_ug.abs() > 0.1);
     }
 }

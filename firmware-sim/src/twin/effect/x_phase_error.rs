@@ -85,17 +85,17 @@ impl Effect for Wandering {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn a_tenth_of_a_degree_is_21_micro_g_in_a_fork_and_a_fifth_in_the_difference() {
         let of = PhaseError { degrees_per_k: 0.1, wander_k: 1.0, wander_tau_s: 1e-3 };
-        let mut bench = Bench::new(&of);
+        let mut alone = OneEffect::new(&of);
         let (mut mean, mut bias) = (0.0, 0.0);
         for _ in 0..4000 {
-            bench.pass(1.0);
-            let seen = bench.look();
+            alone.pass(1.0);
+            let seen = alone.look();
             mean += (seen.mean_hz / 83.5e-6).powi(2);
             bias += seen.bias_ug.powi(2);
         }

@@ -73,16 +73,16 @@ impl Effect for Jumping {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn it_has_two_values_and_jumps_every_ten_minutes() {
-        let mut bench = Bench::new(&Telegraph::default());
-        let (mut jumps, mut before_ug) = (0, bench.look().bias_ug);
+        let mut alone = OneEffect::new(&Telegraph::default());
+        let (mut jumps, mut before_ug) = (0, alone.look().bias_ug);
         for _ in 0..120_000 {
-            bench.pass(1.0);
-            let now_ug = bench.look().bias_ug;
+            alone.pass(1.0);
+            let now_ug = alone.look().bias_ug;
             assert!((now_ug.abs() - 10.0).abs() < 1e-6);
             jumps += i32::from((now_ug - before_ug).abs() > 1.0);
             before_ug = now_ug;

@@ -67,19 +67,19 @@ impl Effect for Leaning {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Bench;
+    use super::super::one_effect::OneEffect;
     use super::*;
 
     #[test]
     fn over_a_day_the_level_sways_by_5_micro_g_and_1_g_does_not() {
-        let mut bench = Bench::new(&Tide::default());
+        let mut alone = OneEffect::new(&Tide::default());
         let mut highest_ug: f64 = 0.0;
         for quarter in 0..96 {
-            bench.now.age_days = f64::from(quarter) / 96.0;
-            highest_ug = highest_ug.max(bench.look().bias_ug);
+            alone.now.age_days = f64::from(quarter) / 96.0;
+            highest_ug = highest_ug.max(alone.look().bias_ug);
         }
         assert!((highest_ug - 5.0).abs() < 0.02, "{highest_ug}");
-        bench.apply(90.0);
-        assert!(bench.look().bias_ug.abs() < 1e-6);
+        alone.apply(90.0);
+        assert!(alone.look().bias_ug.abs() < 1e-6);
     }
 }

@@ -16,7 +16,7 @@ use tests::example;
 /// What happened, and how often.
 pub type Seen = BTreeMap<&'static str, u64>;
 
-pub struct Bench<'a> {
+pub struct Talk<'a> {
     pool: &'a Pool,
     line: VirtualLine,
     reference: Reference<'a>,
@@ -32,7 +32,7 @@ pub struct Bench<'a> {
     steps: usize,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> Talk<'a> {
     /// A new instrument; some have been programmed, a few of these wrongly.
     pub fn new(pool: &'a Pool, seed: u64, dice: &mut Dice) -> Self {
         let programmed = dice.percent(40).then(|| pool.sent[dice.roll(pool.sent.len() as u64) as usize].clone());

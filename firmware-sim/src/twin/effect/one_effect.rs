@@ -1,4 +1,4 @@
-//! A bench for one effect: conditions by hand, no laboratory around it.
+//! One effect for its unit test: conditions by hand, no laboratory around it.
 
 use super::{Effect, Setting, Switch};
 use crate::twin::conditions::{Conditions, Input};
@@ -8,7 +8,7 @@ use crate::twin::static_map::StaticMap;
 use crate::twin::truth::Truth;
 
 /// One effect on the nominal device, at 25 °C and 0 g, switched on a moment ago.
-pub(crate) struct Bench {
+pub(crate) struct OneEffect {
     pub effect: Box<dyn Effect>,
     pub now: Conditions,
     map: StaticMap,
@@ -25,7 +25,7 @@ pub(crate) struct Seen {
     pub delta_hz: f64,
 }
 
-impl Bench {
+impl OneEffect {
     pub fn new(parameters: &impl Switch) -> Self {
         let (truth, rig) = (Truth::b(), Rig::default());
         let map = StaticMap::new(&truth);
