@@ -17,26 +17,17 @@ mod house;
 mod names;
 
 use circles::{Circle, circles};
-use house::{Arrow, House};
-use std::path::Path;
+use house::House;
 use tempfile::TempDir;
 
 const CRATES: [&str; 6] = ["protocol", "firmware-core", "firmware", "firmware-sim", "trainer", "tempco"];
 
-/// Folders whose plan is being redrawn. They need not hold yet; whoever finishes one strikes it out here.
-const BEING_REBUILT: &[&str] = &["trainer/src/diagnose"];
-
 const LONGEST_FILE: usize = 400;
 
-fn is_being_rebuilt(file: &Path) -> bool {
-    BEING_REBUILT.iter().any(|folder| file.starts_with(folder) || file == Path::new(folder).with_extension("rs"))
-}
-
-/// Every circle of a crate, in words; what leads out of a folder that is being rebuilt doesn't count.
+/// Every circle of a crate, in words.
 fn circles_of(house: &House) -> String {
-    let counts = |arrow: &Arrow| !is_being_rebuilt(&house.files[arrow.from].name);
     let told = |circle: &Circle| format!("\nin {}: {}", circle.folder.join("::"), circle.told(house));
-    circles(house, &counts).iter().map(told).collect()
+    circles(house).iter().map(told).collect()
 }
 
 #[test]
@@ -55,7 +46,7 @@ fn strays_of(house: &House) -> Vec<String> {
     let mut strays = Vec::new();
     for block in house.impls() {
         let [here, home] = [block.file, block.defined_in].map(|file| &house.files[file]);
-        if !here.module.starts_with(&home.module) && !is_being_rebuilt(&here.name) {
+        if !here.module.starts_with(&home.module) {
             let (of, here, home) = (block.of, here.name.display(), home.name.display());
             strays.push(format!("{here}:{}: `impl {of}`, which {home} defines", block.line));
         }
@@ -76,7 +67,7 @@ fn methods_of_a_type_are_written_in_its_own_folder() {
 #[test]
 fn no_file_is_longer_than_one_reads_at_once() {
     let files = CRATES.into_iter().flat_map(|folder| House::read(folder).files);
-    let long = files.filter(|file| file.lines > LONGEST_FILE && !is_being_rebuilt(&file.name));
+    let long = files.filter(|file| file.lines > LONGEST_FILE);
     let long: Vec<String> = long.map(|file| format!("{}: {} lines", file.name.display(), file.lines)).collect();
     assert!(long.is_empty(), "over {LONGEST_FILE} lines: {long:#?}\nA second concept in a file gets one of its own.");
 }

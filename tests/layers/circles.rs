@@ -20,9 +20,9 @@ pub struct Circle<'a> {
     arrows: Vec<Vec<&'a Arrow>>,
 }
 
-/// Of every folder, the shortest circle of each knot. `counts` says which arrows are looked at.
-pub fn circles<'a>(house: &'a House, counts: &dyn Fn(&Arrow) -> bool) -> Vec<Circle<'a>> {
-    let arrows: Vec<&Arrow> = house.arrows.iter().filter(|arrow| counts(arrow)).collect();
+/// Of every folder, the shortest circle of each knot.
+pub fn circles(house: &House) -> Vec<Circle<'_>> {
+    let arrows: Vec<&Arrow> = house.arrows.iter().collect();
     let folders: BTreeSet<&[String]> =
         house.files.iter().flat_map(|file| (0..file.module.len()).map(|depth| &file.module[..depth])).collect();
     folders.into_iter().flat_map(|folder| circles_in(house, folder, &arrows)).collect()
