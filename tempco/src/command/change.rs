@@ -2,16 +2,57 @@
 
 use super::train::train_with_bar;
 use crate::failure::{Answer, Failure};
-use crate::output::Output;
+use crate::output::{Force, Kind, Output};
 use crate::render;
+use crate::subject::Subject;
 use crate::table::Table;
 use crate::terminal::say;
+use clap::Args;
+use std::path::PathBuf;
 use trainer::campaign::{Campaign, Split};
 use trainer::compare::{Comparison, compare};
 use trainer::ladder::{BARE, Rung};
 use trainer::model::Model;
 use trainer::retrain;
 use trainer::train::{EffectChoice, TrainSettings, Trained, check};
+
+/// What to change, and where the result goes.
+#[derive(Args)]
+pub struct Request {
+    /// Model file
+    model: PathBuf,
+
+    #[command(flatten)]
+    subject: Subject,
+
+    /// Where to write the new model
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    force: Force,
+
+    /// Prints one JSON object instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+impl Request {
+    /// Retrains the model with what `effects` makes of its effects and the one that is asked for.
+    pub fn carry_out(
+        &self,
+        effects: impl FnOnce(&Change, EffectChoice) -> Result<Vec<EffectChoice>, Failure>,
+    ) -> Result<Answer, Failure> {
+        let output = Output::file(&self.output, Kind::Model, "-o", self.force);
+        let output = output.reading(self.subject.files().iter().chain([&self.model]));
+        output.check()?;
+        let model = Model::read(&self.model)?;
+        let campaign = self.subject.read_for(&model)?;
+        let change = Change::of(&model, &campaign)?.scaled(self.subject.scale_factor);
+        let effects = effects(&change, self.subject.effect())?;
+        ladder(&change, &effects, &output, self.json)
+    }
+}
 
 /// A model and the campaign to retrain it on.
 pub struct Change<'a> {
@@ -35,7 +76,7 @@ impl<'a> Change<'a> {
     }
 
     /// With this scale factor in place of the model's, if one is given.
-    pub fn scaled(mut self, scale_factor_hz_per_g: Option<f64>) -> Self {
+    fn scaled(mut self, scale_factor_hz_per_g: Option<f64>) -> Self {
         self.settings.scale_factor_hz_per_g = scale_factor_hz_per_g.or(self.settings.scale_factor_hz_per_g);
         self
     }
@@ -94,7 +135,7 @@ impl<'a> Change<'a> {
 }
 
 /// Climbs with a progress bar, writes the model on the last rung, and prints the ladder.
-pub fn ladder(change: &Change, effects: &[EffectChoice], output: &Output, json: bool) -> Result<Answer, Failure> {
+fn ladder(change: &Change, effects: &[EffectChoice], output: &Output, json: bool) -> Result<Answer, Failure> {
     let train =
         |split: &Split, settings: &TrainSettings, name: &str| train_with_bar(change.campaign, split, settings, name);
     let Ladder { rungs, model, comparison } = change.climb(effects, train, |_| ())?;
