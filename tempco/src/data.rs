@@ -173,17 +173,35 @@ pub fn restarts() -> RangedU64ValueParser<usize> {
 /// Which runs to keep from training.
 #[derive(Args, Clone, Default)]
 pub struct HeldOut {
-    /// Runs to keep from training, or `none`; without it the last run of each kind that has two or more
-    #[arg(long, value_name = "RUN,…", value_delimiter = ',')]
+    /// Runs to keep from training, or `none`; without it the last run of each kind that has two or more. May be repeated; a
+    /// name that has a comma stands alone
+    #[arg(long, value_name = "RUN,…")]
     pub hold_out: Option<Vec<String>>,
 }
 
 impl HeldOut {
-    pub fn choice(&self) -> HoldOut {
+    /// Where a run of exactly this name exists it is meant, else the list that the text is.
+    pub fn choice(&self, campaign: &Campaign) -> HoldOut {
         match &self.hold_out {
             None => HoldOut::LastOfEachKind,
-            Some(names) if names.as_slice() == ["none"] => HoldOut::None,
-            Some(names) => HoldOut::Named(names.clone()),
+            Some(texts) if texts.as_slice() == ["none"] => HoldOut::None,
+            Some(texts) => HoldOut::Named(texts.iter().flat_map(|text| named(text, campaign)).collect()),
         }
     }
+
+    /// The option as it is typed, of texts that are names.
+    pub fn words(&self, campaign: &Campaign) -> Vec<String> {
+        let Some(names) = &self.hold_out else { return Vec::new() };
+        if campaign.runs.iter().any(|run| run.name.contains(',')) {
+            return names.iter().map(|name| shell::option("--hold-out", name)).collect();
+        }
+        vec![shell::option("--hold-out", &names.join(","))]
+    }
+}
+
+fn named(text: &str, campaign: &Campaign) -> Vec<String> {
+    if campaign.runs.iter().any(|run| run.name == text) {
+        return vec![text.to_owned()];
+    }
+    text.split(',').map(str::to_owned).collect()
 }

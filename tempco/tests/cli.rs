@@ -204,3 +204,25 @@ fn help_of_every_verb_has_an_example() {
         assert!(text.contains(&format!("Example:  tempco {verb}")), "{verb}: {text}");
     }
 }
+
+#[test]
+fn a_run_whose_name_has_a_comma_is_held_out_by_that_name() {
+    let folder = TempDir::new().expect("a folder");
+    let named =
+        |from: &str, to: &str| fs::read_to_string(SMALL).expect("checked in").replace(from, &format!("\"{to}\","));
+    fs::write(folder.path().join("c.csv"), named("full-2,", "full-1,zero-1")).expect("written");
+    let held_out = |options: &[&str]| {
+        let mut command = tempco(folder.path());
+        let text = stdout(command.args(["train", "c.csv", "--restarts", "1", "--json"]).args(options));
+        let told: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let runs = told["runs"].as_array().expect("runs").iter().filter(|run| run["held_out"] == true);
+        runs.map(|run| run["run"].as_str().expect("a name").to_owned()).collect::<Vec<_>>()
+    };
+    // A run of exactly this name is meant rather than two others.
+    assert_eq!(held_out(&["--hold-out", "full-1,zero-1"]), ["full-1,zero-1"]);
+    assert_eq!(held_out(&["--hold-out", "full-1", "--hold-out", "zero-1"]), ["full-1", "zero-1"]);
+    assert_eq!(held_out(&["--hold-out", "full-1,zero-1", "--hold-out", "zero-1,full-3"]).len(), 3);
+    assert!(
+        stderr_of(tempco(folder.path()).args(["train", "c.csv", "--hold-out", "full-1,zero-9"]), 2).contains("zero-9")
+    );
+}

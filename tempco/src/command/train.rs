@@ -143,7 +143,7 @@ impl Train {
         let settings = self.training.settings();
         settings.check()?;
         let campaign = self.data.read()?;
-        let split = split(&campaign, &self.held_out.choice(), &settings)?;
+        let split = split(&campaign, &self.held_out.choice(&campaign), &settings)?;
         let trained = train_with_bar(&campaign, &split, &settings, "training")?;
         output.write(trained.model.to_text().as_bytes())?;
         let comparison = compare(&trained.model, &campaign)?;

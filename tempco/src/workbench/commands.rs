@@ -3,7 +3,6 @@
 use super::entry::Entry;
 use super::measured::Measured;
 use crate::command::train::Training;
-use crate::data::HeldOut;
 use crate::shell::{self, option, word};
 use std::path::Path;
 use trainer::train::EffectChoice;
@@ -18,7 +17,7 @@ pub fn inspect(data: &str) -> String {
 
 /// Without the model's place: see [`into`].
 pub fn train(measured: &Measured, training: &Training) -> String {
-    let hold_out = hold_out(&measured.held_out).into_iter().chain(training.words());
+    let hold_out = measured.held_out.words(&measured.campaign).into_iter().chain(training.words());
     let options: String = hold_out.map(|word| format!(" {word}")).collect();
     format!("tempco train {}{options}", measured.data.command_line())
 }
@@ -64,8 +63,4 @@ pub fn rehearse(scenario: &Path) -> String {
 
 pub fn reveal(envelope: &Path, campaign: &Path) -> String {
     format!("tempco reveal {} {}", shell::path(envelope), shell::path(campaign))
-}
-
-fn hold_out(held_out: &HeldOut) -> Option<String> {
-    held_out.hold_out.as_ref().map(|names| option("--hold-out", &names.join(",")))
 }

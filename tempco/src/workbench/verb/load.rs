@@ -88,7 +88,7 @@ pub fn start(shared: &Arc<Shared>, data: Data) -> Result<(), Refusal> {
 pub fn measured(data: Data, campaign: Campaign, blind: Option<Blind>) -> Measured {
     let runs = campaign.runs.iter().map(|run| RunSummary::of(&campaign, run)).collect();
     let held_out = HeldOut::default();
-    let split = campaign.split(&held_out.choice()).map_err(Failure::from);
+    let split = campaign.split(&held_out.choice(&campaign)).map_err(Failure::from);
     let mappings = mappings(&data);
     Measured { data, mappings, campaign: Arc::new(campaign), runs: Arc::new(runs), held_out, split, blind }
 }

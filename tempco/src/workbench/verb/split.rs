@@ -18,7 +18,7 @@ pub fn run(shared: &Arc<Shared>, Request { hold_out }: Request) -> Result<(), Re
     let none = hold_out.as_ref().is_some_and(Vec::is_empty);
     let held_out = HeldOut { hold_out: if none { Some(vec!["none".to_owned()]) } else { hold_out } };
     let campaign = Arc::clone(&measured(&shared.session())?.campaign);
-    let split = campaign.split(&held_out.choice()).map_err(crate::failure::Failure::from)?;
+    let split = campaign.split(&held_out.choice(&campaign)).map_err(crate::failure::Failure::from)?;
     shared.change(|session| {
         if let Some(measured) = &mut session.measured {
             (measured.held_out, measured.split) = (held_out, Ok(split));

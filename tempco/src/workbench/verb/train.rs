@@ -26,7 +26,7 @@ pub fn run(shared: &Arc<Shared>, training: Training) -> Result<(), Refusal> {
 
 fn trained(job: &Job, measured: &Measured, settings: &TrainSettings, origin: Origin) -> Result<Finish, Failure> {
     let Measured { campaign, held_out, .. } = measured;
-    let split = split(campaign, &held_out.choice(), settings)?;
+    let split = split(campaign, &held_out.choice(campaign), settings)?;
     let trained = train(campaign, &split, settings, job)?;
     let entry = Entry::new(origin, trained.model.clone(), campaign)?;
     Ok(keep(Entry { simpler: Simpler::all(&trained, campaign, &split), ..entry }))
