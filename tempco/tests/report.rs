@@ -233,3 +233,15 @@ fn the_report_is_one_file_that_asks_nothing_of_the_network_and_the_same_every_ti
     }
     assert!(first.len() < 1_000_000, "{} bytes", first.len());
 }
+
+#[test]
+fn what_foreign_names_would_hide_or_turn_around_is_seen_in_the_report_without_a_browser() {
+    let folder = TempDir::new().expect("a folder");
+    let name = "a\u{1b}[31m\u{202e}<b>";
+    let small = fs::read_to_string(&campaigns()[0]).expect("checked in").replace("full-2,", &format!("\"{name}\","));
+    fs::write(folder.path().join("c.csv"), small).expect("written");
+    let text = fs::read_to_string(report(folder.path(), Path::new("c.csv"))).expect("written");
+    let (page, _) = text.split_once("<script type=\"application/json\"").expect("numbers after the page");
+    assert!(page.contains("a\\u{1b}[31m\\u{202e}&lt;b&gt;"), "the name is shown");
+    assert!(!page.contains('\u{1b}') && !page.contains('\u{202e}'));
+}
