@@ -36,6 +36,10 @@ fn main() {
             std::process::exit(2);
         }
     };
+    if options.help {
+        println!("{}", options::HELP);
+        return;
+    }
     let mut records = Vec::new();
     for &protocol in &options.protocols {
         println!("\n# Protocol `{}`, seed {}", protocol.name(), options.seed);

@@ -16,7 +16,8 @@ cargo run --release -p tests --example blind_benchmark -- [options]
   --after-add       trains with the found and with the true effects and compares their held-out residuals
   --save DIR        writes every campaign as CSV, and truth.json beside them
   --json FILE       writes every result, campaign by campaign
-  --verbose         one line a campaign as it finishes";
+  --verbose         one line a campaign as it finishes
+  --help            prints this";
 
 /// What a campaign hides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +83,7 @@ pub struct Options {
     pub save: Option<PathBuf>,
     pub json: Option<PathBuf>,
     pub verbose: bool,
+    pub help: bool,
 }
 
 impl Options {
@@ -99,10 +101,12 @@ impl Options {
             save: None,
             json: None,
             verbose: false,
+            help: false,
         };
         while let Some(argument) = arguments.next() {
             match argument.as_str() {
                 "--verbose" => options.verbose = true,
+                "--help" | "-h" => options.help = true,
                 "--after-add" => options.after_add = true,
                 name => {
                     let value =
@@ -159,4 +163,18 @@ fn chosen<T: Copy>(value: &str, all: &[T], name: fn(T) -> &'static str) -> Resul
     let one =
         all.iter().find(|&&one| name(one) == value).ok_or_else(|| format!("{value}: expected {} or all", names()))?;
     Ok(vec![*one])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn help_is_no_mistake() {
+        let parsed = |words: &[&str]| Options::parse(words.iter().map(|&word| word.to_owned()));
+        assert!(parsed(&["--help"]).is_ok_and(|options| options.help));
+        assert!(parsed(&["--count", "3", "-h"]).is_ok_and(|options| options.help));
+        assert!(parsed(&["--count", "3"]).is_ok_and(|options| !options.help));
+        assert!(parsed(&["--helpless"]).is_err());
+    }
 }
