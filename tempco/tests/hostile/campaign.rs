@@ -109,34 +109,38 @@ const SIGNAL: usize = 5;
 
 fn distort_column(table: &mut Table, random: &mut Random) -> &'static str {
     let scale = 10_f64.powi(random.below(19) as i32 - 9);
-    match random.below(7) {
-        0 => {
-            change(table, REFERENCE, |number| number * scale);
-            "the reference in another unit"
-        }
-        1 => {
-            change(table, SIGNAL, |number| number * scale);
-            "the signal in another unit"
-        }
-        2 => {
-            change(table, REFERENCE, |number| -number);
-            "the reference negated"
-        }
-        3 => {
-            change(table, TIME, |number| number + 1.7e9);
-            "a calendar's clock"
-        }
-        4 => {
-            change(table, TEMPERATURE, f64::round);
-            "a coarse thermometer"
-        }
-        5 => {
-            change(table, TEMPERATURE, |_| 25.0);
-            "one temperature"
-        }
-        _ => {
-            change(table, SIGNAL, |number| number.clamp(-300.0, 300.0));
-            "a clipped signal"
+    let deeds = [
+        (REFERENCE, Deed::Times(scale), "the reference in another unit"),
+        (SIGNAL, Deed::Times(scale), "the signal in another unit"),
+        (REFERENCE, Deed::Times(-1.0), "the reference negated"),
+        (TIME, Deed::Plus(1.7e9), "a calendar's clock"),
+        (TEMPERATURE, Deed::Round, "a coarse thermometer"),
+        (TEMPERATURE, Deed::Becomes(25.0), "one temperature"),
+        (SIGNAL, Deed::Clip(300.0), "a clipped signal"),
+    ];
+    let (column, deed, how) = deeds[random.below(deeds.len())];
+    change(table, column, deed);
+    how
+}
+
+/// What is done to every number of a column.
+#[derive(Clone, Copy)]
+enum Deed {
+    Times(f64),
+    Plus(f64),
+    Becomes(f64),
+    Clip(f64),
+    Round,
+}
+
+impl Deed {
+    fn of(self, number: f64) -> f64 {
+        match self {
+            Self::Times(factor) => number * factor,
+            Self::Plus(shift) => number + shift,
+            Self::Becomes(value) => value,
+            Self::Clip(most) => number.clamp(-most, most),
+            Self::Round => number.round(),
         }
     }
 }
@@ -187,11 +191,11 @@ fn written(table: &Table, separator: &str) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// The numbers of one column, put through `change` where they are numbers.
-fn change(table: &mut Table, column: usize, change: impl Fn(f64) -> f64) {
+/// The numbers of one column; what is none stays.
+fn change(table: &mut Table, column: usize, deed: Deed) {
     for row in &mut table.rows {
         if let Some(number) = row.get(column).and_then(|cell| cell.parse::<f64>().ok()) {
-            row[column] = format!("{:?}", change(number));
+            row[column] = format!("{:?}", deed.of(number));
         }
     }
 }
@@ -219,36 +223,23 @@ fn spoil_cells(table: &mut Table, random: &mut Random) -> &'static str {
 
 fn spoil_column(table: &mut Table, random: &mut Random) -> &'static str {
     let column = random.below(table.header.len());
-    match random.below(6) {
-        0 => {
-            let scale = 10_f64.powi(random.below(49) as i32 - 24);
-            change(table, column, |number| number * scale);
-            "a column scaled"
-        }
-        1 => {
-            change(table, column, |number| -number);
-            "a column negated"
-        }
-        2 => {
-            let shift = [1e3, 1.7e9, -1e6, 1e12, 273.15, 1e18][random.below(6)];
-            change(table, column, |number| number + shift);
-            "a column shifted"
-        }
-        3 => {
-            let value = random.of(&["0", "1", "-1", "1e-9", "1e9"]);
-            (0..table.rows.len()).for_each(|row| set(table, row, column, value));
-            "a column constant"
-        }
+    let (deed, how) = match random.below(6) {
+        0 => (Deed::Times(10_f64.powi(random.below(49) as i32 - 24)), "a column scaled"),
+        1 => (Deed::Times(-1.0), "a column negated"),
+        2 => (Deed::Plus([1e3, 1.7e9, -1e6, 1e12, 273.15, 1e18][random.below(6)]), "a column shifted"),
+        3 => (Deed::Becomes([0.0, 1.0, -1.0, 1e-9, 1e9][random.below(5)]), "a column constant"),
         4 => {
             let other = random.below(table.header.len());
             table.header.swap(column, other);
-            "two names swapped"
+            return "two names swapped";
         }
         _ => {
             table.header[column] = random.of(&HEADERS).to_owned();
-            "a name spoilt"
+            return "a name spoilt";
         }
-    }
+    };
+    change(table, column, deed);
+    how
 }
 
 fn spoil_rows(table: &mut Table, random: &mut Random) -> &'static str {
