@@ -4,6 +4,7 @@
 //! heart passes them. It fails here.
 
 use crate::campaign::{Campaign, Row, Run, Split};
+use crate::metrics::levels::{level_width, span};
 use crate::noise::rms;
 use crate::progress::Quiet;
 use crate::residuals::{ResidualError, arranged, residuals};
@@ -51,8 +52,9 @@ pub enum CrossValidationError {
     Residual(#[from] ResidualError),
 }
 
-/// Levels this close are left out together, g.
-const LEVEL_WIDTH_G: f64 = 0.15;
+/// Levels this close are left out together, as a part of what all of them span: of a table from −1 to 1 g, ±15° about the
+/// vertical. And so are references that no more than scatter about one level.
+const LEVEL_WIDTH: f64 = 0.075;
 /// Temperatures this close are left out together, °C.
 const TEMPERATURE_WIDTH_C: f64 = 5.0;
 /// A value must have this share of the rows to count as a level or node and not as a passage between them.
@@ -67,13 +69,17 @@ pub fn cross_validate(
     split: &Split,
     settings: &TrainSettings,
 ) -> Result<CrossValidation, CrossValidationError> {
+    let column = |value: fn(&Row) -> f64| -> Vec<f64> {
+        let runs = split.training.iter().filter_map(|&index| campaign.runs.get(index));
+        runs.flat_map(|run| &run.rows).map(value).collect()
+    };
     let leave_out = |value: fn(&Row) -> f64, width: f64| -> Result<Vec<LeftOut>, CrossValidationError> {
-        let rows = split.training.iter().filter_map(|&index| campaign.runs.get(index)).flat_map(|run| &run.rows);
-        let clusters = clusters(rows.map(value).collect(), width);
+        let clusters = clusters(column(value), width);
         let inner = clusters.get(1..clusters.len().saturating_sub(1)).unwrap_or_default();
         inner.par_iter().map(|cluster| without(campaign, split, settings, value, cluster)).collect()
     };
-    let by_level = leave_out(|row| row.reference_g, LEVEL_WIDTH_G)?;
+    let levels = column(|row| row.reference_g);
+    let by_level = leave_out(|row| row.reference_g, (LEVEL_WIDTH * span(&levels)).max(level_width(&levels)))?;
     let by_temperature = leave_out(|row| f64::from(row.sample.temperature_uc) * 1e-6, TEMPERATURE_WIDTH_C)?;
     Ok(CrossValidation {
         levels_ug: pooled_ug(&by_level),
