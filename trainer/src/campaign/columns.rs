@@ -49,7 +49,7 @@ impl Layout {
             power_on: inputs.take("power_on_s"),
             age: inputs.take("age_days"),
             signal,
-            sum: inputs.take("sum_f_hz"),
+            sum: inputs.sum(options),
             temperature: inputs.require("temperature_c")?,
             reference: inputs.reference(options.constant_reference)?,
             reference_sigma: inputs.take("reference_sigma_g"),
@@ -106,6 +106,14 @@ impl<'a> Inputs<'a> {
     fn take(&mut self, name: &str) -> Option<Input> {
         let position = self.left.iter().position(|input| input.name == name)?;
         Some(self.left.remove(position))
+    }
+
+    /// The sum in the unit of the difference; beside a signal that is no frequency it is a channel like any other.
+    fn sum(&mut self, options: &ReadOptions) -> Option<Input> {
+        let power = options.quantity().power_of_hz()?;
+        let mut sum = self.take("sum_f_hz")?;
+        sum.conversion = sum.conversion.scaled(-power);
+        Some(sum)
     }
 
     fn require(&mut self, name: &str) -> Result<Input, CampaignError> {

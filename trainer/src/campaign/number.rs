@@ -139,6 +139,18 @@ impl Conversion {
     /// The column is in our unit.
     pub(super) const NONE: Self = Self::Exact { shift: 0, offset_u: 0 };
 
+    /// The same, times a power of ten.
+    pub(super) fn scaled(self, power: i32) -> Self {
+        let scale = 10_f64.powi(power);
+        match self {
+            Self::Exact { shift, offset_u: 0 } => Self::Exact { shift: shift + power, offset_u: 0 },
+            Self::Exact { shift, offset_u } => {
+                Self::Linear { factor: scale * 10_f64.powi(shift), offset: scale * offset_u as f64 * 1e-6 }
+            }
+            Self::Linear { factor, offset } => Self::Linear { factor: factor * scale, offset: offset * scale },
+        }
+    }
+
     /// Reads `*factor`, `/divisor`, `+offset`, `-offset`, or a factor and then an offset.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let text = text.trim();

@@ -16,6 +16,21 @@ impl Default for Quantity {
 }
 
 impl Quantity {
+    /// The signal's unit as a power of ten of a hertz; none where it is no frequency, or of an unknown prefix.
+    #[must_use]
+    pub fn power_of_hz(&self) -> Option<i32> {
+        Some(match self.signal_unit.strip_suffix("Hz")? {
+            "" => 0,
+            "G" => 9,
+            "M" => 6,
+            "k" => 3,
+            "m" => -3,
+            "µ" | "μ" | "u" => -6,
+            "n" => -9,
+            _ => return None,
+        })
+    }
+
     /// Whether the signal is a frequency, of oscillators that lock and of a counter with a clock.
     #[must_use]
     pub fn is_frequency(&self) -> bool {
