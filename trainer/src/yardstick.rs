@@ -93,6 +93,11 @@ impl Yardstick {
         Cow::Owned(scaled)
     }
 
+    /// The same for what is in g, whatever the campaign's unit; none of what is no acceleration.
+    pub fn of_g(&self) -> Option<Self> {
+        Some(Self { factor: self.gravity?, ..*self })
+    }
+
     /// A reference in the units of the work.
     pub fn reference(&self, value: f64) -> f64 {
         // Adding zero turns −0 into 0.

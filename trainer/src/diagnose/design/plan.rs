@@ -8,7 +8,7 @@
 use super::distance::{Predicted, distances};
 use super::hypothesis::{fitted, typical};
 use super::planned::joint;
-use crate::campaign::{Campaign, Quantity};
+use crate::campaign::Campaign;
 use crate::diagnose::answer::Diagnosis;
 use crate::diagnose::error::DiagnoseError;
 use crate::diagnose::forward::EffectSet;
@@ -127,7 +127,9 @@ pub enum PlanError {
     #[error("there is no effect named `{0}` that an instrument could take out; `tempco effects` lists them")]
     UnknownEffect(String),
     /// Chamber and turntable are for accelerometers.
-    #[error("the recordings are of chamber and turntable, but this campaign's reference is in {0}, not in g")]
+    #[error(
+        "the recordings are of chamber and turntable, but this campaign's reference is in {0}, which is no known unit of acceleration (g, mg, µg, ng, m/s2, mm/s2, Gal, mGal)"
+    )]
     NoAccelerometer(String),
     /// The measurements don't allow a diagnosis.
     #[error(transparent)]
@@ -161,11 +163,10 @@ pub fn plan(
     recordings: &[Recording],
     progress: &dyn Progress,
 ) -> Result<Plan, PlanError> {
-    if campaign.quantity.reference_unit != Quantity::default().reference_unit {
-        return Err(PlanError::NoAccelerometer(campaign.quantity.reference_unit.clone()));
-    }
-    let (reason, names) = open(model, diagnosis, effects)?;
     let yardstick = yardstick(model, campaign)?;
+    // Recordings are laid out in g.
+    let of_g = yardstick.of_g().ok_or_else(|| PlanError::NoAccelerometer(campaign.quantity.reference_unit.clone()))?;
+    let (reason, names) = open(model, diagnosis, effects)?;
     let (campaign, diagnosis) = (&*yardstick.campaign(campaign), &inside(diagnosis, &yardstick));
     let old = problem(model, campaign, &yardstick)?;
     let start = Start::new(&old, (model, campaign, &yardstick), diagnosis, reason, &names)?;
@@ -174,7 +175,7 @@ pub fn plan(
         if progress.cancelled() {
             return Err(DiagnoseError::Cancelled);
         }
-        let joint = joint(model, campaign, &yardstick.campaign(&recording.campaign), &yardstick);
+        let joint = joint(model, campaign, &of_g.campaign(&recording.campaign), &yardstick);
         let mut new = problem(model, &joint, &yardstick)?;
         // The next training will know how coarsely the recording is sampled, and how long its pauses are.
         new.forward.cells.max_gap_us = new.forward.cells.max_gap_us.max(recording.campaign.max_gap_us());
@@ -225,7 +226,8 @@ impl Start {
             initial,
         };
         let shown = with_channels(campaign);
-        let usual = |about: &About| yardstick.coefficients_inside(about, &typical(about));
+        let of_g = yardstick.of_g().unwrap_or(*yardstick);
+        let usual = |about: &About| of_g.coefficients_inside(about, &typical(about));
         let hypothetical = |name: &String| {
             let about = effect::about(name).filter(|about| about.is_on_device() && !about.takes_program());
             let about = about.ok_or_else(|| PlanError::UnknownEffect(name.clone()))?;
