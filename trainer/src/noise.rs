@@ -11,7 +11,7 @@ const SAME_STATE: f64 = 1e-3;
 /// move.
 const SAME_STEPS: f64 = 4.0;
 /// A smaller share of neighbours meets at one reference by chance. Their inputs differ, and so does what
-/// the model misses of them.
+/// the model misses of them. And a smaller share is written again by chance: counters count in steps.
 const LEAST_SHARE: f64 = 0.1;
 /// Median of the magnitude of a normal value of mean zero, as a fraction of its σ.
 const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
@@ -20,18 +20,25 @@ const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 ///
 /// From differences of neighbours within a state, so that whatever a model misses cancels as long as
 /// it is slower than the sampling. The median instead of the mean square, so that the steps at the
-/// beginning of a state don't count. `None` where neighbours share a state by chance at most.
+/// beginning of a state don't count; nor do rows that were written again before there was anything new to read.
+/// `None` where neighbours share a state by chance at most.
 #[must_use]
 pub fn sample_sigma_g<'a>(runs: impl IntoIterator<Item = (&'a Run, &'a RunResiduals)>) -> Option<f64> {
-    let mut both: Vec<[f64; 2]> = Vec::new();
+    let (mut both, mut again): (Vec<[f64; 2]>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (run, residuals) in runs {
         let step = |(rows, pair): (&[Row], &[f64])| {
             [rows[1].reference_g - rows[0].reference_g, pair[1] - pair[0]].map(f64::abs)
         };
-        both.extend(run.rows.windows(2).zip(residuals.windows(2)).map(step));
+        for (rows, pair) in run.rows.windows(2).zip(residuals.windows(2)) {
+            let side = if is_written_again(rows) { &mut again } else { &mut both };
+            side.push(step((rows, pair)));
+        }
         (low, high) =
             run.rows.iter().fold((low, high), |(low, high), row| (low.min(row.reference_g), high.max(row.reference_g)));
+    }
+    if (again.len() as f64) < LEAST_SHARE * (again.len() + both.len()) as f64 {
+        both.append(&mut again);
     }
     let typical = normal_sigma(both.iter().map(|[_, step]| *step).collect());
     let same = (SAME_STATE * (high / 2.0 - low / 2.0)).max(SAME_STEPS * typical);
@@ -40,6 +47,12 @@ pub fn sample_sigma_g<'a>(runs: impl IntoIterator<Item = (&'a Run, &'a RunResidu
         return None;
     }
     Some(normal_sigma(steps) / 2.0_f64.sqrt())
+}
+
+/// Whether signal and thermometer are the same to the last digit: a logger was faster than the sensor.
+fn is_written_again(rows: &[Row]) -> bool {
+    let [before, here] = [&rows[0].sample, &rows[1].sample];
+    (before.delta_f_uhz, before.temperature_uc) == (here.delta_f_uhz, here.temperature_uc)
 }
 
 /// Standard deviation of normal values by the median of their magnitudes; 0 for none.
@@ -156,7 +169,23 @@ mod tests {
     }
 
     fn row(second: u64, reference_g: f64) -> Row {
-        Row { sample: Sample::from_difference(second * 1_000_000, 0, 0), reference_g, reference_sigma_g: None }
+        let sample = Sample::from_difference(second * 1_000_000, second as i64, 0);
+        Row { sample, reference_g, reference_sigma_g: None }
+    }
+
+    #[test]
+    fn rows_that_were_written_again_tell_no_noise() {
+        let once: Vec<f64> = (0..200).map(|k| f64::from(k * 37 % 101) * 1e-6).collect();
+        let run = |times: u64| Run {
+            name: "run".to_owned(),
+            kind: String::new(),
+            source: PathBuf::new(),
+            rows: (0..200 * times).map(|k| row(k / times, 1.0)).collect(),
+        };
+        let thrice: RunResiduals = once.iter().flat_map(|value| [*value; 3]).collect();
+        let sigma = |run: &Run, residuals| sample_sigma_g([(run, residuals)]).expect("neighbours share a state");
+        let (plain, again) = (sigma(&run(1), &once), sigma(&run(3), &thrice));
+        assert!(plain > 1e-6 && (again - plain).abs() < 1e-12, "{plain} {again}");
     }
 
     #[test]
