@@ -188,11 +188,11 @@ time_s,f1_hz,f2_hz,sum_f_hz,temperature_c,reference_g⏎0,41238,41162,82402.5,2,
 const RUNS: &str = r#"
 HEAD⏎0,1,2,3⏎1.5,1,2,3⏎1.5000001,1,2,3⏎
     run.csv:4, column 1 (time_s): found 1.5 s again, expected more than the 1.5 s of the row before in run
-    Sort the rows by time; if a new recording begins here, name it in a column `run` or give it its own file.
+    Sort the rows by time and leave out what is there twice; if a new recording begins here, name it in a column `run` or give it its own file.
 
 run,HEAD⏎a,5,1,2,3⏎b,0,1,2,3⏎a,4.5,1,2,3⏎
     run.csv:4, column 2 (time_s): found 4.5 s, expected more than the 5 s of the row before in a
-    Sort the rows by time; if a new recording begins here, name it in a column `run` or give it its own file.
+    Sort the rows by time and leave out what is there twice; if a new recording begins here, name it in a column `run` or give it its own file.
 
 run,kind,HEAD⏎a,full,0,1,2,3⏎b,ramp,0,1,2,3⏎a,ramp,1,1,2,3⏎
     run.csv:4, column 2 (kind): found "ramp", expected "full", as in the rows of a above

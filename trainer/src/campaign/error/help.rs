@@ -95,7 +95,7 @@ fn plain(error: &CampaignError) -> &'static str {
             "Check which columns are f1, f2, their difference and sum; `ignore` in campaign.toml leaves the wrong one out."
         }
         E::TimeNotIncreasing(_) => {
-            "Sort the rows by time; if a new recording begins here, name it in a column `run` or give it its own file."
+            "Sort the rows by time and leave out what is there twice; if a new recording begins here, name it in a column `run` or give it its own file."
         }
         E::RunTwice(_) => "Rename one of the two, or give the file only once.",
         E::KindContradiction(_) => "Give all rows of a run the same kind, or make two runs of it.",
