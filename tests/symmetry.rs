@@ -1,43 +1,23 @@
 //! What does not change the physics does not change the answer: which fork is called the first, which way up is positive,
-//! the unit of the reference, when the clock was started, what the runs are called.
+//! the units of signal and reference, when the clock was started, what the runs are called, whether a file was read twice.
 //!
 //! The whole chain each time: a campaign is trained on, diagnosed, given what it lacks, and compared.
 
-use firmware_sim::blind::{BlindOptions, blinded};
-use firmware_sim::scenario::Scenario;
-use firmware_sim::simulation;
-use std::ops::ControlFlow;
-use tempfile::TempDir;
-use trainer::campaign::{Campaign, HoldOut, Quantity, ReadOptions, Row};
-use trainer::compare::compare;
+#[path = "symmetry/chain.rs"]
+mod chain;
+#[path = "symmetry/drift.rs"]
+mod drift;
+#[path = "symmetry/signal.rs"]
+mod signal;
+#[path = "symmetry/twice.rs"]
+mod twice;
+
+use chain::{answer, campaigns, changed, measured, near, same, scaled, settings, with_reference};
+use trainer::campaign::{Campaign, HoldOut, Row};
+use trainer::cross_validation::cross_validate;
 use trainer::diagnose::{Diagnosis, diagnose};
 use trainer::progress::Quiet;
 use trainer::train::{EffectChoice, TrainError, TrainSettings, train};
-
-const SHORT: &str = include_str!("scenarios/short.toml");
-
-/// A campaign in which these effects are hidden, each about five times the noise.
-fn measured(hidden: &[&str], seed: u64) -> Campaign {
-    let mut scenario = Scenario::from_toml(SHORT).expect("a scenario");
-    for name in hidden {
-        let candidates = vec![(*name).to_owned()];
-        let options = BlindOptions { candidates, at_least: 1, at_most: 1, weakest: 4.5, strongest: 5.0 };
-        scenario = blinded(&scenario, seed, &options).expect("the scenario excites it").0;
-    }
-    let recording = simulation::simulate(&scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
-    let folder = TempDir::new().expect("a folder");
-    let file = folder.path().join("campaign.csv");
-    recording.write_csv(&mut std::fs::File::create(&file).expect("a file")).expect("written");
-    Campaign::read(&[file], &ReadOptions::default()).expect("a campaign")
-}
-
-/// The campaign with every row changed, its reference in this unit.
-fn changed(campaign: &Campaign, unit: &str, change: impl Fn(&mut Row)) -> Campaign {
-    let mut runs = campaign.runs.clone();
-    runs.iter_mut().flat_map(|run| &mut run.rows).for_each(change);
-    let quantity = Quantity { reference_unit: unit.to_owned(), ..campaign.quantity.clone() };
-    Campaign::new(runs, campaign.channels.clone(), quantity)
-}
 
 fn forks_swapped(row: &mut Row) {
     row.sample.delta_f_uhz = -row.sample.delta_f_uhz;
@@ -45,73 +25,6 @@ fn forks_swapped(row: &mut Row) {
 
 fn turned_over(row: &mut Row) {
     row.reference_g = -row.reference_g;
-}
-
-fn scaled(factor: f64) -> impl Fn(&mut Row) {
-    move |row: &mut Row| {
-        row.reference_g *= factor;
-        row.reference_sigma_g = row.reference_sigma_g.map(|sigma| sigma * factor);
-    }
-}
-
-fn settings(effects: Vec<EffectChoice>) -> TrainSettings {
-    TrainSettings { restarts: 4, effects, ..TrainSettings::new(1) }
-}
-
-/// What the chain says: the residual when trained, the diagnosis, the residual when what was found is in the model.
-struct Answer {
-    residual_ug: f64,
-    diagnosis: Diagnosis,
-    after_ug: f64,
-}
-
-fn answer(campaign: &Campaign) -> Answer {
-    let split = campaign.split(&HoldOut::LastOfEachKind).expect("a split");
-    let model = train(campaign, &split, &settings(Vec::new()), &Quiet).expect("a model").model;
-    let diagnosis = diagnose(&model, campaign, &Quiet).expect("a diagnosis");
-    let effects = diagnosis.findings.iter().map(|finding| EffectChoice::named(&finding.effect)).collect();
-    let better = train(campaign, &split, &settings(effects), &Quiet).expect("a better model").model;
-    let residual_ug = |model| compare(model, campaign).expect("a comparison").residual_ug;
-    Answer { residual_ug: residual_ug(&model), diagnosis, after_ug: residual_ug(&better) }
-}
-
-/// How far figures may differ: another order of the same sums, another start of the same descent.
-const NEAR: f64 = 0.03;
-
-fn near(what: &str, a: f64, b: f64) {
-    assert!((a - b).abs() <= NEAR * a.abs().max(b.abs()), "{what}: {a} and {b}");
-}
-
-/// `other` is the same answer with the reference in units of 1/`factor`; `power` says how each parameter follows it.
-fn same(what: &str, one: &Answer, other: &Answer, factor: f64, power: impl Fn(&str) -> i32) {
-    near(what, one.residual_ug * factor.abs(), other.residual_ug);
-    near(what, one.after_ug * factor.abs(), other.after_ug);
-    let (one, other) = (&one.diagnosis, &other.diagnosis);
-    assert_eq!(one.verdict, other.verdict, "{what}: {one:#?} {other:#?}");
-    near(what, one.residual_ug * factor.abs(), other.residual_ug);
-    near(what, one.noise_floor_ug * factor.abs(), other.noise_floor_ug);
-    assert_eq!(one.unobservable, other.unobservable, "{what}");
-    assert_eq!(one.findings.len(), other.findings.len(), "{what}: {one:#?} {other:#?}");
-    for (a, b) in one.findings.iter().zip(&other.findings) {
-        assert_eq!((&a.effect, &a.confounded_with), (&b.effect, &b.confounded_with), "{what}");
-        near(what, a.delta_bic, b.delta_bic);
-        for ((name, a), (other, b)) in a.parameters.iter().zip(&b.parameters) {
-            assert_eq!(name, other);
-            near(&format!("{what}: {name}"), a.value * factor.powi(power(name)), b.value);
-        }
-    }
-}
-
-/// Campaigns of different character: nothing missing, a lag, a play, a channel.
-fn campaigns() -> Vec<(&'static str, Campaign)> {
-    let lag = ("a lag", measured(&["thermal-lag"], 1));
-    let play = ("a play", measured(&["thermal-hysteresis"], 3));
-    vec![("nothing", measured(&[], 6)), lag, play]
-}
-
-/// Amplitudes in units of the reference follow it, times and widths don't.
-fn with_reference(parameter: &str) -> i32 {
-    i32::from(parameter.contains("_g"))
 }
 
 #[test]
@@ -134,6 +47,28 @@ fn the_unit_of_the_reference_does_not_matter() {
         for (unit, factor) in [("mg", 1e3), ("µg", 1e6), ("m/s2", 9.806_65)] {
             let other = changed(&campaign, unit, scaled(factor));
             same(&format!("{what} in {unit}"), &one, &answer(&other), factor, with_reference);
+        }
+    }
+}
+
+#[test]
+fn what_is_left_out_to_cross_validate_is_the_same_in_any_unit() {
+    let campaign = measured(&[], 6);
+    let left_out = |unit: &str, factor: f64| {
+        let campaign = changed(&campaign, unit, scaled(factor));
+        let split = campaign.split(&HoldOut::LastOfEachKind).expect("a split");
+        cross_validate(&campaign, &split, &TrainSettings { restarts: 1, ..settings(Vec::new()) }).expect("trained")
+    };
+    let one = left_out("g", 1.0);
+    // −1 to 1 g by sines: −0.5, 0 and 0.5 are inner levels, and 210° is at −0.5 as 330° is.
+    assert!(one.by_level.len() >= 2, "{one:?}");
+    for (unit, factor) in [("µg", 1e6), ("kN", 1e-3)] {
+        let other = left_out(unit, factor);
+        assert_eq!(one.by_level.len(), other.by_level.len(), "{unit}");
+        for (a, b) in one.by_level.iter().zip(&other.by_level) {
+            assert_eq!(a.samples, b.samples, "{unit}");
+            assert!((a.at * factor - b.at).abs() < 1e-9 * factor, "{unit}: {a:?} {b:?}");
+            near(unit, a.residual_ug * factor, b.residual_ug);
         }
     }
 }
