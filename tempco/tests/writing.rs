@@ -1,63 +1,16 @@
 //! Claim: nobody loses a measurement. What a command writes appears whole or not at all, and never over what its user made.
 
-use assert_cmd::Command;
-use std::collections::BTreeMap;
+#[path = "writing/folder.rs"]
+mod folder;
+#[path = "writing/killed.rs"]
+mod killed;
+
+use folder::{SMALL, TEMPCO, WRITERS, contents, said, worked_in, writing};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
-use std::process::{ExitStatus, Stdio};
-use std::time::Duration;
+use std::process::ExitStatus;
 use tempfile::TempDir;
-
-const SMALL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/campaigns/small.csv");
-const SMALL_SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/campaigns/small.toml");
-const TEMPCO: &str = env!("CARGO_BIN_EXE_tempco");
-
-fn said(folder: &Path, code: i32, arguments: &[&str]) -> String {
-    let mut command = Command::new(TEMPCO);
-    command.current_dir(folder).env("NO_COLOR", "1").args(arguments);
-    let output = command.assert().code(code).get_output().clone();
-    String::from_utf8([output.stdout, output.stderr].concat()).expect("text")
-}
-
-/// A folder with a campaign, a model of it, and what is made of that.
-fn worked_in() -> TempDir {
-    let folder = TempDir::new().expect("a folder");
-    fs::copy(SMALL, folder.path().join("small.csv")).expect("copied");
-    let run = |arguments: &[&str]| drop(said(folder.path(), 0, arguments));
-    run(&["train", "small.csv", "-o", "model.toml", "--restarts", "1"]);
-    run(&["export", "model.toml", "-o", "calibration.bin"]);
-    run(&["export", "model.toml", "-o", "calibration.hex"]);
-    run(&["device", "keygen", "-o", "factory"]);
-    run(&["device", "provision", "--serial", "SN-1", "-o", "identity.hex"]);
-    run(&["compare", "model.toml", "small.csv", "--report", "report.html"]);
-    run(&["simulate", SMALL_SCENARIO, "--blind", "-o", "campaign.csv"]);
-    folder
-}
-
-/// Every file of a folder and what it holds.
-fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = fs::read_dir(folder).expect("a folder").flatten().filter(|entry| entry.path().is_file());
-    let name = |entry: &fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
-    entries.map(|entry| (name(&entry), fs::read(entry.path()).expect("readable"))).collect()
-}
-
-/// Every command that writes a file, with FILE for its name.
-const WRITERS: [&[&str]; 9] = [
-    &["train", "small.csv", "-o", "FILE", "--restarts", "1"],
-    &["add", "model.toml", "thermal-lag", "small.csv", "-o", "FILE"],
-    &["remove", "model.toml", "thermal-lag", "small.csv", "-o", "FILE"],
-    &["export", "model.toml", "-o", "FILE"],
-    &["export", "model.toml", "--sign", "factory.key", "-o", "FILE"],
-    &["compare", "model.toml", "small.csv", "--report", "FILE"],
-    &["simulate", SMALL_SCENARIO, "-o", "FILE"],
-    &["simulate", SMALL_SCENARIO, "--blind", "-o", "FILE"],
-    &["device", "provision", "--serial", "SN-1", "-o", "FILE"],
-];
-
-fn writing<'a>(writer: &[&'a str], file: &'a str) -> Vec<&'a str> {
-    writer.iter().map(|word| if *word == "FILE" { file } else { word }).collect()
-}
 
 #[test]
 fn no_command_writes_over_a_file_of_its_user_s_or_of_another_kind() {
@@ -242,87 +195,4 @@ fn a_calibration_as_hex_takes_away_what_the_second_slot_held() {
     let (_, second) = text.split_once(":02000004080EE4\n").expect("a piece in the second sector");
     let data: Vec<&str> = second.lines().take_while(|line| !line.starts_with(":00000001")).collect();
     assert!(data.len() == 1 && data[0].starts_with(":10"), "{second}");
-}
-
-/// Pseudorandom numbers, the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % limit
-    }
-}
-
-/// Starts a command, ends it after a while with Ctrl-C or the harder way, and says whether it was ended before it was done.
-fn is_killed(folder: &Path, arguments: &[&str], random: &mut Random, took_us: u64) -> bool {
-    let mut process = std::process::Command::new(TEMPCO)
-        .args(arguments)
-        .current_dir(folder)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("it starts");
-    std::thread::sleep(Duration::from_micros(random.below(took_us * 11 / 10)));
-    let signal = if random.below(2) == 0 { "-INT" } else { "-KILL" };
-    let id = process.id().to_string();
-    drop(std::process::Command::new("kill").args([signal, &id]).stderr(Stdio::null()).status());
-    !process.wait().expect("it ends").success()
-}
-
-/// Puts files back as they were.
-fn restore(folder: &Path, files: &[&str], from: &BTreeMap<String, Vec<u8>>) {
-    for file in files {
-        match from.get(*file) {
-            Some(bytes) => fs::write(folder.join(file), bytes).expect("written"),
-            None => drop(fs::remove_file(folder.join(file))),
-        }
-    }
-}
-
-/// 90 by default; `TEMPCO_KILLS=500` kills more often.
-#[test]
-#[expect(clippy::disallowed_methods, reason = "when to kill takes a clock")]
-fn whoever_is_killed_leaves_the_old_file_or_the_new_one_and_nothing_else() {
-    let kills: usize = std::env::var("TEMPCO_KILLS").ok().and_then(|text| text.parse().ok()).unwrap_or(90);
-    let folder = worked_in();
-    let folder = folder.path();
-    let cases: [(usize, &[&str]); 8] = [
-        (0, &["model.toml"]),
-        (1, &["added.toml"]),
-        (3, &["calibration.bin"]),
-        (3, &["calibration.hex"]),
-        (5, &["report.html"]),
-        (6, &["sim.csv"]),
-        (7, &["campaign.csv", "campaign.sealed"]),
-        (8, &["identity.hex"]),
-    ];
-    let (mut random, mut killed) = (Random(7), 0);
-    for (writer, files) in cases {
-        let mut arguments = writing(WRITERS[writer], files[0]);
-        if writer == 0 {
-            arguments.extend(["--seed", "2"]);
-        }
-        let old = contents(folder);
-        let start = std::time::Instant::now();
-        said(folder, 0, &arguments);
-        let took_us = start.elapsed().as_micros() as u64;
-        let new = contents(folder);
-        let others = |all: &BTreeMap<String, Vec<u8>>| -> Vec<String> {
-            all.keys().filter(|name| !files.contains(&name.as_str())).cloned().collect()
-        };
-        for attempt in 0..kills.div_ceil(cases.len()) {
-            let before = if attempt % 2 == 0 { &old } else { &new };
-            restore(folder, files, before);
-            killed += usize::from(is_killed(folder, &arguments, &mut random, took_us));
-            let after = contents(folder);
-            for file in files {
-                let found = after.get(*file);
-                assert!(found == before.get(*file) || found == new.get(*file), "{file} is cut after kill {attempt}");
-            }
-            assert_eq!(others(&after), others(&old), "something is left behind");
-        }
-        said(folder, 0, &arguments);
-    }
-    assert!(killed > kills / 3, "only {killed} of {kills} were killed");
 }
