@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use tempfile::TempDir;
 
-const FEW: usize = 250;
+const FEW: usize = 350;
 const ROWS: usize = 10;
 
 /// Ramps of a sensor that the thermometer is ahead of, at levels all round.
