@@ -1,7 +1,8 @@
 //! A small campaign, what the chain says of it, and when two answers are the same.
 
-use firmware_sim::scenario::{BlindOptions, Scenario};
-use firmware_sim::twin;
+use firmware_sim::blind::{BlindOptions, blinded};
+use firmware_sim::scenario::Scenario;
+use firmware_sim::simulation::simulate;
 use std::ops::ControlFlow;
 use tempfile::TempDir;
 use trainer::campaign::{Campaign, HoldOut, Quantity, ReadOptions, Row};
@@ -18,9 +19,9 @@ pub fn measured(hidden: &[&str], seed: u64) -> Campaign {
     for name in hidden {
         let candidates = vec![(*name).to_owned()];
         let options = BlindOptions { candidates, at_least: 1, at_most: 1, weakest: 4.5, strongest: 5.0 };
-        scenario = scenario.blinded(seed, &options).expect("the scenario excites it").0;
+        scenario = blinded(&scenario, seed, &options).expect("the scenario excites it").0;
     }
-    let recording = twin::simulate(&scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
+    let recording = simulate(&scenario, seed, &mut |_| ControlFlow::Continue(())).expect("a recording");
     let folder = TempDir::new().expect("a folder");
     let file = folder.path().join("campaign.csv");
     recording.write_csv(&mut std::fs::File::create(&file).expect("a file")).expect("written");
