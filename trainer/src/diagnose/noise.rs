@@ -11,6 +11,8 @@ mod initial_state;
 mod kalman;
 mod likelihood;
 mod observation;
+#[cfg(test)]
+mod other_filter;
 mod reported;
 
 pub(super) use components::{Component, NoiseModel};

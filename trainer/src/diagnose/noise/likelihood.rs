@@ -26,19 +26,21 @@ impl Whitening {
         Self { passes, log_det }
     }
 
-    /// The columns with the noise's correlation taken out: white with variance one; a matrix of the same shape a run.
+    /// The columns with the noise's correlation taken out: white with variance one. Of each run cells × k in the
+    /// noise's unit (µg or mHz), and the same without a unit.
     pub fn of(&self, columns: &Columns) -> Columns {
         let pairs: Vec<_> = self.passes.iter().zip(columns).collect();
         pairs.into_par_iter().map(|(pass, values)| pass.whitened(values)).collect()
     }
 
-    /// The same of one run.
+    /// The same of one run: cells of that run × k.
     pub fn of_run(&self, run: usize, columns: &DMatrix<f64>) -> DMatrix<f64> {
         self.passes[run].whitened(columns)
     }
 }
 
-/// Minus twice the logarithm of the likelihood of one column, but for a constant.
+/// Minus twice the logarithm of the likelihood of one column, but for a constant: of each run cells × 1, in the noise's
+/// unit.
 pub fn deviance(cells: &Cells, initial: &InitialStates, noise: &NoiseModel, column: &Columns) -> f64 {
     let states = states(noise, initial);
     let mut runs: Vec<_> = observed(cells, initial).into_iter().zip(column.iter().map(DMatrix::as_slice)).collect();
