@@ -19,6 +19,8 @@ mod answer;
 mod cells;
 mod design;
 mod error;
+#[cfg(test)]
+mod example;
 mod forward;
 mod lack_of_fit;
 mod noise;

@@ -104,7 +104,7 @@ impl<'a> Cells<'a> {
         at(low)..=at(high)
     }
 
-    /// Columns with a value in each cell: one matrix a run, `N` columns.
+    /// Columns with a value in each cell, in the unit of `of`: of each run cells × `N`.
     pub fn columns<const N: usize>(&self, of: impl Fn(usize, &RunCells, &Cell) -> [f64; N]) -> Columns {
         let run = |(index, run): (usize, &RunCells)| {
             let rows = run.cells.iter().flat_map(|cell| of(index, run, cell));
@@ -113,7 +113,7 @@ impl<'a> Cells<'a> {
         self.runs.iter().enumerate().map(run).collect()
     }
 
-    /// RMS over the samples of a course in the cells, one column, in its unit.
+    /// RMS over the samples of a course, in its unit: of each run cells × 1.
     pub fn rms(&self, course: &Columns) -> f64 {
         let pairs = self.iter().zip(course.iter().flat_map(|run| run.iter()));
         let (squares, samples) = pairs

@@ -10,7 +10,7 @@ pub type Columns = Vec<DMatrix<f64>>;
 /// Products of so many runs are added up by one thread.
 const RUNS_TOGETHER: usize = 8;
 
-/// Σ AᵀB over the runs.
+/// Σ AᵀB over the runs: of cells × m and cells × n, m × n in the product of their units.
 pub fn product(a: &Columns, b: &Columns) -> DMatrix<f64> {
     let (rows, columns) = (width(a), width(b));
     let pairs: Vec<_> = a.iter().zip(b).collect();
@@ -22,22 +22,22 @@ pub fn product(a: &Columns, b: &Columns) -> DMatrix<f64> {
     sums.into_iter().reduce(|sum, next| sum + next).unwrap_or_else(|| DMatrix::zeros(rows, columns))
 }
 
-/// How many columns there are.
+/// How many columns there are: k of cells × k.
 pub fn width(columns: &Columns) -> usize {
     columns.first().map_or(0, DMatrix::ncols)
 }
 
-/// One less the other.
+/// One less the other, both cells × k in one unit.
 pub fn difference(a: &Columns, b: &Columns) -> Columns {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
-/// Columns of both, the first ones first.
+/// Columns of both, the first ones first: of cells × m and cells × n, cells × (m + n).
 pub fn stacked(first: &Columns, second: &Columns) -> Columns {
     joined([first, second])
 }
 
-/// All columns side by side.
+/// All columns side by side: of cells × k each, cells × Σk.
 pub fn joined<'a>(columns: impl IntoIterator<Item = &'a Columns>) -> Columns {
     let columns: Vec<&Columns> = columns.into_iter().collect();
     let runs = columns.first().map_or(0, |columns| columns.len());
@@ -55,7 +55,7 @@ pub fn joined<'a>(columns: impl IntoIterator<Item = &'a Columns>) -> Columns {
     (0..runs).map(join).collect()
 }
 
-/// Columns so large that what they absorb costs nothing.
+/// Columns, cells × k, each so large that what it absorbs costs nothing: in the unit of `unit`, the noise of a sample.
 pub fn generous(columns: &Columns, unit: f64) -> Columns {
     let largest = |column: usize| columns.iter().map(|run| run.column(column).amax()).fold(0.0, f64::max);
     let scale = |column| if largest(column) > 0.0 { GENEROUS * unit / largest(column) } else { 0.0 };

@@ -32,9 +32,9 @@ pub struct Gls {
 /// What is left of candidate columns and of their products with the residual.
 #[derive(Clone, Debug)]
 pub struct Score {
-    /// M.
+    /// M: k × k, per squared unit of an amplitude.
     pub normal: DMatrix<f64>,
-    /// s.
+    /// s: k, per unit of an amplitude.
     pub right: DVector<f64>,
 }
 
@@ -59,7 +59,8 @@ struct Together {
 }
 
 impl Gls {
-    /// `residual` and `nuisance` under `noise`; `None` if the numbers are not finite.
+    /// `residual` (of each run cells × 1) and `nuisance` (cells × p) under `noise`, all in its unit, µg or mHz; `None`
+    /// if the numbers are not finite.
     pub fn new(
         cells: &Cells,
         initial: &InitialStates,
@@ -79,7 +80,7 @@ impl Gls {
         deviance.is_finite().then_some(Self { whitening, nuisance, residual, factor, absorbed, deviance })
     }
 
-    /// The score of columns.
+    /// The score of k columns: of each run cells × k, in the residual's unit per unit of an amplitude.
     pub fn score(&self, columns: &Columns) -> Score {
         let columns = &self.whitening.of(columns);
         let cross = product(&self.nuisance, columns);
@@ -88,7 +89,7 @@ impl Gls {
         Score { normal, right }
     }
 
-    /// The score of columns that are nothing but in one run.
+    /// The score of k columns that are nothing but in one run: cells of that run × k.
     pub fn score_in(&self, run: usize, columns: &DMatrix<f64>) -> Score {
         let columns = self.whitening.of_run(run, columns);
         let cross = self.nuisance[run].tr_mul(&columns);
@@ -97,7 +98,8 @@ impl Gls {
         Score { normal, right }
     }
 
-    /// The scores of many candidates, whose columns are asked for when their turn comes.
+    /// The scores of many candidates, whose columns (of each run cells × k, k the candidate's own) are asked for when
+    /// their turn comes.
     pub fn scores<'c, T: Sync>(
         &self,
         candidates: &'c [T],
@@ -116,7 +118,7 @@ impl Gls {
         in_turn(candidates, columns, of)
     }
 
-    /// Of each candidate's columns: RMS size, and the greatest share of an amplitude that the map leaves.
+    /// Of each candidate's columns, of each run cells × k: RMS size, and the greatest share of an amplitude that the map leaves.
     pub fn shares_left<'c, T: Sync>(
         &self,
         candidates: &'c [T],
@@ -148,14 +150,16 @@ impl Gls {
         Together { places: places(candidates), columns, cross, solved }
     }
 
-    /// Columns less what the map's `nuisance`, the one of this problem, makes of them, cell by cell.
+    /// Columns (of each run cells × k) less what the map's `nuisance` (cells × p), the one of this problem, makes of
+    /// them, cell by cell: cells × k, in their unit.
     pub fn beyond(&self, columns: &Columns, nuisance: &Columns) -> Columns {
         let white = self.whitening.of(columns);
         let absorbed = self.factor.solve(&product(&self.nuisance, &white));
         columns.iter().zip(nuisance).map(|(columns, nuisance)| columns - nuisance * &absorbed).collect()
     }
 
-    /// The residual less what the map's nuisance makes of it, cell by cell.
+    /// The residual (of each run cells × 1) less what the map's nuisance (cells × p) makes of it, cell by cell:
+    /// cells × 1.
     pub fn adapted(&self, residual: &Columns, nuisance: &Columns) -> Columns {
         let own = |(residual, nuisance): (&DMatrix<f64>, &DMatrix<f64>)| {
             let mut left = residual.clone();
@@ -189,7 +193,7 @@ impl Score {
         -2.0 * self.right.sum() - self.normal.sum()
     }
 
-    /// Covariance of the amplitudes.
+    /// Covariance of the amplitudes: k × k.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         Some(self.factor()?.inverse())
     }
@@ -231,7 +235,7 @@ fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {
     2.0 * factor.l_dirty().diagonal().iter().map(|value| value.ln()).sum::<f64>()
 }
 
-/// The same nuisance in fewer columns: directions that the data say nothing about are left out.
+/// The same nuisance (of each run cells × p) in fewer columns: directions that the data say nothing about are left out.
 pub fn compressed(cells: &Cells, noise: &NoiseModel, nuisance: &Columns) -> Columns {
     let white = Whitening::new(cells, &InitialStates::default(), noise).of(nuisance);
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(product(&white, &white));
@@ -239,3 +243,6 @@ pub fn compressed(cells: &Cells, noise: &NoiseModel, nuisance: &Columns) -> Colu
     let directions = eigenvectors.select_columns(&kept);
     nuisance.iter().map(|run| run * &directions).collect()
 }
+
+#[cfg(test)]
+mod tests;

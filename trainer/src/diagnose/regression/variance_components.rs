@@ -13,9 +13,9 @@ pub struct Measured<'a> {
     pub cells: &'a Cells<'a>,
     /// What is left of the initial states.
     pub initial: &'a InitialStates,
-    /// The residual: one column.
+    /// The residual, µg or mHz: of each run cells × 1.
     pub residual: &'a Columns,
-    /// What may absorb it.
+    /// What may absorb it, in the same unit: of each run cells × p.
     pub nuisance: &'a Columns,
 }
 
@@ -92,4 +92,89 @@ fn changed(noise: &NoiseModel, component: Component, factor: f64) -> Option<Nois
     let unit = component.unit(noise.sample);
     next[component] = (size * factor).clamp(LEAST_COMPONENT * unit, MOST_COMPONENT * unit);
     (next[component] != size).then_some(next)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{Gauss, Recipe, problem, white_noise};
+    use nalgebra::DMatrix;
+
+    const SAMPLE_UG: f64 = 5.0;
+    const RUN_UG: f64 = 60.0;
+    const POSITION_UG: f64 = 25.0;
+    const WALK_UG_PER_SQRT_S: f64 = 0.4;
+
+    /// A residual that is noise of these sizes and nothing else: of a sample, run, position and walk.
+    fn simulated(cells: &Cells, [sample, run, position, walk]: [f64; 4]) -> Columns {
+        let mut gauss = Gauss::new(5);
+        let mut of = |cells: &[crate::diagnose::cells::Cell]| {
+            let (offset, mut table, mut course) = (run * gauss.next(), 0.0, 0.0);
+            let values = cells.iter().enumerate().map(|(index, cell)| {
+                if cell.new_position {
+                    table = position * gauss.next();
+                }
+                if index > 0 {
+                    course += walk * cell.since_s.sqrt() * gauss.next();
+                }
+                offset + table * cell.cross_g + course + sample / cell.samples.sqrt() * gauss.next()
+            });
+            DMatrix::from_iterator(cells.len(), 1, values)
+        };
+        cells.runs.iter().map(|run| of(&run.cells)).collect()
+    }
+
+    fn found(sizes: [f64; 4], start: NoiseModel) -> NoiseModel {
+        let campaign = Recipe { runs: 40, rows: 90, ..Recipe::default() }.campaign();
+        let problem = problem(&campaign);
+        let residual = simulated(problem.cells(), sizes);
+        let nuisance: Columns = residual.iter().map(|run| DMatrix::zeros(run.nrows(), 0)).collect();
+        let initial = InitialStates::default();
+        Measured { cells: problem.cells(), initial: &initial, residual: &residual, nuisance: &nuisance }
+            .noise(start, true)
+    }
+
+    #[test]
+    fn the_components_that_a_residual_was_made_of_are_found_again() {
+        let sizes = [SAMPLE_UG, RUN_UG, POSITION_UG, WALK_UG_PER_SQRT_S];
+        let mut start = NoiseModel::first_guess(SAMPLE_UG, 0.0);
+        // Within half an hour a wander of hours is a walk.
+        (start[Component::Flicker], start[Component::Wander]) = (0.0, 0.0);
+        let noise = found(sizes, start);
+        // Forty values say a standard deviation to 11 %; the search ends within a factor of 1.2.
+        for (component, size) in
+            [(Component::Run, RUN_UG), (Component::Position, POSITION_UG), (Component::Walk, WALK_UG_PER_SQRT_S)]
+        {
+            let ratio = noise[component] / size;
+            assert!((0.65..1.5).contains(&ratio), "{component:?}: {ratio}");
+        }
+        for absent in [Component::Node, Component::Pose] {
+            assert!(noise[absent] < 1.5 * SAMPLE_UG, "{absent:?}: {}", noise[absent]);
+        }
+    }
+
+    #[test]
+    fn a_part_that_starts_at_nothing_stays_at_nothing() {
+        let sizes = [SAMPLE_UG, RUN_UG, POSITION_UG, 0.0];
+        let mut start = white_noise(SAMPLE_UG, 0.0);
+        start[Component::Run] = SAMPLE_UG;
+        let noise = found(sizes, start);
+        assert!(noise[Component::Run] > 0.5 * RUN_UG, "{}", noise[Component::Run]);
+        for component in Component::ALL.into_iter().filter(|component| *component != Component::Run) {
+            assert_eq!(noise[component], 0.0, "{component:?}");
+        }
+    }
+
+    #[test]
+    fn no_part_is_searched_below_or_above_its_bounds() {
+        let noise = found([SAMPLE_UG, 0.0, 0.0, 0.0], NoiseModel::first_guess(SAMPLE_UG, 0.0));
+        for component in [Component::Run, Component::Position, Component::Walk, Component::Wander] {
+            let least = LEAST_COMPONENT * component.unit(SAMPLE_UG);
+            assert!(
+                noise[component] >= least && noise[component] < 20.0 * least,
+                "{component:?}: {}",
+                noise[component]
+            );
+        }
+    }
 }
