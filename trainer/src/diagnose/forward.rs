@@ -59,7 +59,8 @@ impl<'a> Forward<'a> {
         residuals_beside(&self.cells, &self.map, self.sum.as_ref(), fixed, set)
     }
 
-    /// What these effects leave in every cell of `cells`, which may be others than these, µg.
+    /// What these effects leave in every cell of `cells`, which may be others than these, µg: of each
+    /// run cells × 1.
     pub fn residual_in_ug(&self, cells: &Cells, set: &EffectSet) -> Columns {
         self.map.residual_ug(cells, &contributions(cells, set))
     }
@@ -69,7 +70,7 @@ impl<'a> Forward<'a> {
         Jacobian::of(set, base, |moved| self.residuals_beside(fixed, moved))
     }
 
-    /// What effects by themselves add to the residual once compensated, µg.
+    /// What effects by themselves add to the residual once compensated, µg: of each run cells × 1.
     pub fn alone_ug(&self, set: &EffectSet) -> Columns {
         difference(&self.residuals(set).delta, &self.residuals(&EffectSet::NONE).delta)
     }

@@ -10,7 +10,8 @@ use protocol::Weights;
 use protocol::limits::HIDDEN;
 use rayon::prelude::*;
 
-/// How the reading can change by retraining, µg per expected change: polynomials and the network's tangents.
+/// How the reading can change by retraining, µg per expected change: polynomials and the network's tangents, of each run
+/// cells × directions.
 pub fn of_retraining(map: &StaticMap, cells: &Cells) -> Columns {
     let (still, weights) = (cells.is_still(), map.weights());
     let row = |cell: &Cell| {
@@ -25,7 +26,8 @@ pub fn of_retraining(map: &StaticMap, cells: &Cells) -> Columns {
     departures(map, cells, row)
 }
 
-/// How the reading of a smooth instrument can change, µg per expected change: polynomials alone.
+/// How the reading of a smooth instrument can change, µg per expected change: polynomials alone, of each run
+/// cells × polynomials.
 pub fn of_smooth_map(map: &StaticMap, cells: &Cells) -> Columns {
     departures(map, cells, |cell| polynomials(cell.x, cell.t))
 }
@@ -66,4 +68,70 @@ fn chebyshev(most: usize, x: f64) -> Vec<f64> {
         values.push(2.0 * x * values[n - 1] - values[n - 2]);
     }
     values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::cells::width;
+    use crate::diagnose::example::{Recipe, model, problem};
+    use crate::diagnose::problem::scale;
+    use firmware_core::Network;
+
+    #[test]
+    fn the_polynomials_are_chebyshevs_up_to_their_powers() {
+        let angles = [(0.3_f64, 2.0_f64), (1.1, 0.7), (2.9, 1.6)];
+        for (a, b) in angles {
+            let found = polynomials(a.cos(), b.cos());
+            let (most_x, most_t, most) = MAP_POWERS;
+            let pairs = (0..=most_x).flat_map(|i| (0..=most_t).map(move |j| (i, j))).filter(|(i, j)| i + j <= most);
+            let worked: Vec<f64> = pairs.map(|(i, j)| (i as f64 * a).cos() * (j as f64 * b).cos()).collect();
+            assert_eq!(found.len(), worked.len());
+            assert!(found.iter().zip(worked).all(|(a, b)| (a - b).abs() < 1e-12));
+        }
+    }
+
+    #[test]
+    fn the_tangents_are_the_networks_derivatives_by_its_weights() {
+        let mut weights = model().weights();
+        weights.output = [0.5; HIDDEN];
+        weights.input[3] = [-0.75, 1.5];
+        weights.bias[3] = -0.25;
+        let cell = Cell { x: 0.4, t: -0.6, ..Cell::plain(0, 0.0, 0.0) };
+        let found: Vec<f64> = tangents(&weights, &cell).collect();
+        assert_eq!(found.len(), 4 * HIDDEN);
+        // A step that f32 holds exactly.
+        let step = 1.0 / 1024.0_f32;
+        for unit in [0, 3] {
+            for (part, size) in [(0, OUTPUT_SIZE), (1, HIDDEN_SIZE), (2, HIDDEN_SIZE), (3, HIDDEN_SIZE)] {
+                let output = |step: f32| {
+                    let mut moved = weights;
+                    match part {
+                        0 => moved.output[unit] += step,
+                        3 => moved.bias[unit] += step,
+                        input => moved.input[unit][input - 1] += step,
+                    }
+                    Network::<f64>::new(&moved).evaluate(cell.x, cell.t)
+                };
+                let worked = (output(step) - output(-step)) / (2.0 * f64::from(step)) * size;
+                let tangent = found[4 * unit + part];
+                assert!((tangent - worked).abs() < 1e-5 * size, "{unit} {part}: {tangent} {worked}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_map_of_a_still_sensor_may_change_over_temperature_only() {
+        let campaign = Recipe { runs: 2, rows: 60, ..Recipe::default() }.campaign();
+        let problem = problem(&campaign);
+        let map = &problem.forward.map;
+        // As if the reading went so far that all these levels were one.
+        let still = Cells::new(&campaign, scale(&model()), 1, 1e3, None);
+        assert_eq!(width(&of_retraining(map, &still)), MAP_POWERS.1 + 1);
+        let all = width(&of_smooth_map(map, problem.cells()));
+        assert_eq!(width(&of_retraining(map, problem.cells())), all + 4 * HIDDEN);
+        // In µg: the first is a constant, one unit of the network's output.
+        let first = of_smooth_map(map, problem.cells());
+        assert!(first.iter().all(|run| run.column(0).iter().all(|value| (value - map.output_ug()).abs() < 1e-9)));
+    }
 }

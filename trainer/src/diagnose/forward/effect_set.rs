@@ -126,3 +126,50 @@ pub fn amplitudes(about: &About) -> Vec<usize> {
 pub fn name_of(effect: &Chosen) -> &str {
     effect.expression.as_ref().map_or(effect.about.name, Expression::text)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(name: &str, values: &[f64]) -> EffectSet {
+        EffectSet::NONE.with(&Chosen::of(effect::about(name).unwrap()), values)
+    }
+
+    fn all() -> EffectSet {
+        let crossing = one("mode-crossing", &[2e-4, 2.0, 25.0, 10.0]);
+        one("thermal-lag", &[60.0]).and(&one("thermal-gradient", &[-5e-3, 8.0])).and(&crossing)
+    }
+
+    fn names(set: &EffectSet) -> Vec<&str> {
+        set.effects.iter().map(name_of).collect()
+    }
+
+    #[test]
+    fn a_set_is_divided_by_what_predicts_the_sum_each_with_its_values() {
+        let all = all();
+        let (predicted, free) = (all.sum_predicted(), all.sum_free());
+        assert_eq!(names(&predicted), ["thermal-lag"]);
+        assert_eq!(predicted.coefficients.values, [[60.0]]);
+        assert_eq!(names(&free), ["thermal-gradient", "mode-crossing"]);
+        assert_eq!(free.coefficients.values[0], [-5e-3, 8.0]);
+        assert_eq!(all.predicts().collect::<Vec<_>>(), [true, false, false, false, false, false, false]);
+        assert_eq!(names(&all.without(1)), ["thermal-lag", "mode-crossing"]);
+        assert_eq!(all.without(0).coefficients.values[0], [-5e-3, 8.0]);
+    }
+
+    #[test]
+    fn reaches_are_the_size_of_an_amplitude_a_factor_for_a_shape_and_a_width_for_a_place() {
+        assert_eq!(all().reaches(), [1.0, 5e-3, 1.0, 2e-4, 1.0, 2.0, 2.0]);
+    }
+
+    #[test]
+    fn parameters_beyond_the_bounds_are_held_at_them_and_each_effect_remembers_its_own() {
+        let moved = all().at(&[60.0_f64.ln(), 7.0, 1e3_f64.ln(), 2e-4, 0.5_f64.ln(), 20.0, 0.0]);
+        assert!((moved.coefficients.values[1][0] - 0.1).abs() < 1e-12, "{:?}", moved.coefficients.values);
+        assert!((moved.coefficients.values[1][1] - 300.0).abs() < 1e-9);
+        let memories: Vec<_> = all().memories().collect();
+        assert_eq!(memories, [Memory::Lag { tau_s: 60.0 }, Memory::Lag { tau_s: 8.0 }, Memory::None]);
+        assert_eq!(amplitudes(all().effects[2].about), [0]);
+        assert!(is_placed(all().effects[2].about) && !is_placed(all().effects[0].about));
+    }
+}

@@ -38,7 +38,7 @@ impl StaticMap {
         self.factor * self.scale.reading_g(x, t, self.network.evaluate(x, t))
     }
 
-    /// Reading minus reference in each cell, µg, under these contributions.
+    /// Reading minus reference in each cell, µg, under these contributions: of each run cells × 1.
     pub fn residual_ug(&self, cells: &Cells, contributions: &Contributions) -> Columns {
         let of = |(run, contributions): (&RunCells, &Vec<Contribution>)| {
             let values = run
@@ -51,7 +51,7 @@ impl StaticMap {
         cells.runs.par_iter().zip(contributions).map(of).collect()
     }
 
-    /// The same under `own` contributions too, beside fixed ones that leave `before`.
+    /// The same under `own` contributions too, beside fixed ones that leave `before`, µg: of each run cells × 1.
     pub fn residual_beside_ug(
         &self,
         cells: &Cells,
@@ -118,5 +118,53 @@ impl StaticMap {
     /// A unit of the network's output, µg.
     pub fn output_ug(&self) -> f64 {
         (self.factor * f64::from(self.model.scaling.output_g)).abs() * UG
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{G_PER_C, Recipe, problem};
+
+    #[test]
+    fn a_line_reads_what_it_says() {
+        let campaign = Recipe::default().campaign();
+        let problem = problem(&campaign);
+        let (map, cells) = (&problem.forward.map, problem.cells());
+        assert!((map.reading_g(0.5, -1.0) - (0.625 - 1.0 / 32.0)).abs() < 1e-12);
+        assert!((map.reach_g() - 1.25).abs() < 1e-12);
+        assert!((map.scale_factor_hz_per_g(cells) - 409.6).abs() < 1e-9);
+        assert!((map.ug_per_c(cells) - G_PER_C * 1e6).abs() < 1e-6);
+        assert!((map.output_ug() - 3000.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn what_an_effect_does_is_taken_out_at_the_inputs_and_at_the_output() {
+        let campaign = Recipe { runs: 2, rows: 60, ..Recipe::default() }.campaign();
+        let problem = problem(&campaign);
+        let (map, cells) = (&problem.forward.map, problem.cells());
+        let everywhere =
+            |one: Contribution| -> Contributions { cells.runs.iter().map(|run| vec![one; run.cells.len()]).collect() };
+        let none = everywhere(Contribution::default());
+        let alone = map.residual_ug(cells, &none);
+        let bias = Contribution { bias_g: 3e-6, ..Contribution::default() };
+        let warm = Contribution { temperature_c: 0.5, ..Contribution::default() };
+        let faster = Contribution { delta_f_hz: 0.004, ..Contribution::default() };
+        // µg: warmer resonators enter the map elsewhere; a frequency that an effect added is not the signal's.
+        for (contribution, worked_ug) in [
+            (bias, -3.0),
+            (warm, 0.5 * G_PER_C * 1e6),
+            (faster, -0.004 / 409.6 * 1e6),
+            (bias.plus(&warm), 0.5 * G_PER_C * 1e6 - 3.0),
+        ] {
+            let (whole, beside) = (
+                map.residual_ug(cells, &everywhere(contribution)),
+                map.residual_beside_ug(cells, &none, &alone, &everywhere(contribution)),
+            );
+            for run in 0..2 {
+                assert!((&whole[run] - &alone[run]).add_scalar(-worked_ug).amax() < 1e-6, "{contribution:?}");
+                assert!((&whole[run] - &beside[run]).amax() < 1e-6, "{contribution:?}");
+            }
+        }
     }
 }

@@ -17,9 +17,9 @@ use nalgebra::{DMatrix, DVector, SVD};
 /// The measured sum in cells.
 #[derive(Clone)]
 pub struct SumChannel {
-    /// Measured minus a smooth map of the sum, mHz, run by run: one row.
+    /// Measured minus a smooth map of the sum, mHz: of each run cells × 1.
     pub residual: Columns,
-    /// How that map could change, mHz.
+    /// How that map could change, mHz: of each run cells × polynomials.
     pub nuisance: Columns,
     /// Sum's slope over temperature in each cell, mHz/°C, and the sum itself, mHz.
     cells: Vec<Vec<(f64, f64)>>,
@@ -65,7 +65,7 @@ impl SumChannel {
         Some(channel)
     }
 
-    /// The residual with these contributions taken out, mHz.
+    /// The residual with these contributions taken out, mHz: of each run cells × 1.
     pub fn residual_under(&self, cells: &Cells, contributions: &[&Contributions]) -> Columns {
         let mut residual = self.residual.clone();
         for (index, (column, measured)) in residual.iter_mut().zip(&self.cells).enumerate() {
@@ -122,4 +122,62 @@ fn sums(run: &RunCells) -> Option<Vec<f64>> {
         sum.map(|sum| sum * 1e-6 * MHZ / cell.samples)
     };
     run.cells.iter().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{Recipe, SUM_HZ_PER_C, disturbed, effect, problem};
+    use crate::diagnose::forward::EffectSet;
+
+    #[test]
+    fn the_slope_of_the_sum_is_found_and_what_is_left_is_its_noise() {
+        let campaign = Recipe { sum: true, ..Recipe::default() }.campaign();
+        let unmeasured = Recipe::default().campaign();
+        assert!(SumChannel::new(problem(&unmeasured).cells()).is_none());
+        let problem = problem(&campaign);
+        let channel = problem.forward.sum.as_ref().unwrap();
+        assert!((channel.per_c + SUM_HZ_PER_C * 1e3).abs() < 5.0, "{}", channel.per_c);
+        assert!((4.0..6.0).contains(&channel.sample), "{}", channel.sample);
+        let rms_mhz = problem.cells().rms(&channel.residual);
+        assert!((4.0..6.0).contains(&rms_mhz), "{rms_mhz}");
+    }
+
+    #[test]
+    fn resonators_that_lag_move_the_sum_by_its_slope() {
+        let still = Recipe { sum: true, ..Recipe::default() }.campaign();
+        let lag = EffectSet::NONE.with(&effect("thermal-lag", &still), &[60.0]);
+        let campaign = disturbed(still, &lag);
+        let problem = problem(&campaign);
+        let rms_mhz = |set: &EffectSet| problem.cells().rms(&problem.forward.residuals(set).sum.unwrap());
+        let ([without, with], worse) =
+            ([&EffectSet::NONE, &lag].map(rms_mhz), rms_mhz(&EffectSet::NONE.with(&lag.effects[0], &[30.0])));
+        // Two degrees behind at 2 °C/min are 9.6 Hz; the map absorbs some of it.
+        assert!(without > 1000.0 && worse > 300.0, "{without} {worse}");
+        // The map was fitted with the lag in the way, which costs a little of its slope.
+        assert!(with < 0.3 * without, "{with}");
+    }
+
+    #[test]
+    fn a_clock_is_off_by_one_share_wherever_the_difference_says_nothing_too() {
+        let scale = InputScale {
+            delta_f_zero_uhz: 76_000_000,
+            delta_f_half_span_hz: 512.0,
+            temperature_zero_uc: 0,
+            temperature_half_span_c: 1.0,
+        };
+        // At 76 + 512·x Hz; at the third the difference is nothing.
+        let x = [0.5, -0.5, -76.0 / 512.0, 0.25];
+        let cells: Vec<Cell> =
+            x.iter().enumerate().map(|(k, x)| Cell { x: *x, ..Cell::plain(k, k as f64, 1.0) }).collect();
+        let off = [1e-6, 2e-6, 77.0, 3e-6];
+        let contribution = |(x, share): (&f64, f64)| Contribution {
+            delta_f_hz: (76.0 + 512.0 * x) * share,
+            ..Contribution::default()
+        };
+        let contributions: Vec<Contribution> = x.iter().zip(off).map(contribution).collect();
+        let found = clock_shares(&scale, &cells, &contributions);
+        let worked = [1e-6, 2e-6, 2e-6, 3e-6];
+        assert!(found.iter().zip(worked).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?}");
+    }
 }
