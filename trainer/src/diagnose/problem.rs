@@ -22,7 +22,7 @@ use super::forward::Forward;
 pub(super) struct Problem<'a> {
     /// The measurements and what is taken for their cause.
     pub forward: Forward<'a>,
-    /// What retraining can absorb, µg per expected change: a row a cell, a column a direction.
+    /// What retraining can absorb, µg per expected change: of each run cells × p, a column a direction.
     pub basis: Columns,
     /// Noise of a sample, µg.
     pub sample_ug: f64,

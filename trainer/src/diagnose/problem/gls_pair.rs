@@ -33,8 +33,8 @@ impl GlsPair {
         Some(Self { delta, sum })
     }
 
-    /// Products of columns with each other, beyond what map and noise absorb, difference and sum together: square, a row
-    /// and a column for every column.
+    /// Products of columns with each other, beyond what map and noise absorb, difference (µg) and sum (mHz) together:
+    /// of each run cells × k, of both k × k.
     pub fn normal(&self, delta: &Columns, sum: Option<&Columns>) -> DMatrix<f64> {
         let mut normal = self.delta.score(delta).normal;
         if let (Some(gls), Some(columns)) = (&self.sum, sum) {

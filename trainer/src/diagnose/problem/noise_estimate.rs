@@ -61,3 +61,90 @@ fn turned(problem: &Problem, measured: &Measured, without: NoiseModel) -> Option
     let deviance = |noise: &NoiseModel| Some(measured.gls(noise)?.deviance);
     (deviance(&with)? + problem.parameter_cost() < deviance(&without)?).then_some(with)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::noise_models::initial_states;
+    use super::*;
+    use crate::diagnose::example::{Gauss, Moment, Recipe, STEP_S, effect, problem, white};
+    use crate::diagnose::forward::EffectSet;
+    use crate::diagnose::problem::fixed;
+
+    fn estimated(problem: &Problem) -> NoiseModels {
+        let none = EffectSet::NONE;
+        let residuals = problem.forward.residuals(&none);
+        estimate(problem, &residuals, &fixed(problem, &none), &initial_states(problem, &none))
+    }
+
+    #[test]
+    fn white_noise_of_difference_and_sum_has_no_other_part() {
+        let campaign = Recipe { sum: true, ..Recipe::default() }.campaign();
+        let problem = problem(&campaign);
+        let noises = estimated(&problem);
+        let sum = noises.sum.unwrap();
+        // In µg and in mHz.
+        for (noise, sample) in [(noises.delta, problem.sample_ug), (sum, problem.forward.sum.as_ref().unwrap().sample)]
+        {
+            assert!((4.0..6.0).contains(&sample), "{sample}");
+            for component in [Component::Run, Component::Position, Component::Node, Component::Wander, Component::Pose]
+            {
+                assert!(noise[component] < 0.8 * sample, "{component:?}: {}", noise[component]);
+            }
+        }
+    }
+
+    #[test]
+    fn an_offset_of_each_run_is_the_runs_and_refining_keeps_it() {
+        let offsets: Vec<f64> = {
+            let mut gauss = Gauss::new(3);
+            (0..12).map(|_| 80e-6 * gauss.next()).collect()
+        };
+        let bias_g = |moment: &Moment| offsets[moment.run];
+        let campaign = Recipe { runs: 12, rows: 120, bias_g: &bias_g, ..Recipe::default() }.campaign();
+        let problem = problem(&campaign);
+        let noises = estimated(&problem);
+        let found = noises.delta[Component::Run];
+        assert!((40.0..140.0).contains(&found), "{found}");
+        let none = EffectSet::NONE;
+        let refined = refine(&problem, &problem.forward.residuals(&none), &fixed(&problem, &none), &noises);
+        assert!((refined.delta[Component::Run] / found - 1.0).abs() < 0.5);
+        assert!(noises.small().delta[Component::Run] <= problem.sample_ug);
+    }
+
+    #[test]
+    fn a_rig_that_leans_unseen_is_seen_as_such_and_one_that_stands_still_is_not() {
+        let mut gauss = Gauss::new(9);
+        // How it leans wanders within hours, run by run and row by row; it shows across the input axis only.
+        let kept = (-STEP_S / 5000.0_f64).exp();
+        let mut course = || -> Vec<f64> {
+            let first = 300e-6 * gauss.next();
+            let next = |last: &f64| Some(kept * last + 300e-6 * (1.0 - kept * kept).sqrt() * gauss.next());
+            std::iter::successors(Some(first), next).take(225).collect()
+        };
+        let courses: Vec<Vec<f64>> = (0..8).map(|_| course()).collect();
+        let bias_g = |moment: &Moment| {
+            let lean_g = courses[moment.run][(moment.time_s / STEP_S).round() as usize];
+            lean_g * (1.0 - moment.level_g.powi(2)).max(0.0).sqrt()
+        };
+        let turning = Recipe { runs: 8, bias_g: &bias_g, ..Recipe::default() }.campaign();
+        let still = Recipe { runs: 8, ..Recipe::default() }.campaign();
+        let [turned, unturned] = [&turning, &still].map(|campaign| estimated(&problem(campaign)).delta);
+        assert!(turned[Component::Turn] > 60.0, "{turned:?}");
+        assert_eq!(unturned[Component::Turn], 0.0);
+    }
+
+    #[test]
+    fn noise_beside_an_effect_that_remembers_knows_what_is_left_of_its_initial_state() {
+        let campaign = Recipe { runs: 2, ..Recipe::default() }.campaign();
+        let problem = problem(&campaign);
+        let lag = EffectSet::NONE.with(&effect("thermal-lag", &campaign), &[300.0]);
+        let none = white(&problem, &EffectSet::NONE, 5.0);
+        assert!(none.initial.present().is_empty());
+        let beside = none.beside(&initial_states(&problem, &lag));
+        assert_eq!(beside.initial.present(), [(0, 0)]);
+        assert_eq!(beside.delta, none.delta);
+        let first = beside.initial.of_run(1)[0][0][0];
+        let time_s = problem.cells().runs[1].cells[0].time_s;
+        assert!((first - (-time_s / 300.0).exp()).abs() < 1e-12, "{first}");
+    }
+}

@@ -11,9 +11,10 @@ use nalgebra::DMatrix;
 /// Columns whose amplitudes are nuisances: a row a cell, a column a direction; of about one where they are expected.
 #[derive(Clone)]
 pub struct Nuisance {
-    /// What retraining can absorb of the residual, µg.
+    /// What retraining can absorb of the residual, µg: of each run cells × p.
     pub delta: Columns,
-    /// What a change of the sum's map, and effects that leave the sum free, can absorb of it, mHz.
+    /// What a change of the sum's map, and effects that leave the sum free, can absorb of it, mHz: of each run
+    /// cells × q.
     pub sum: Option<Columns>,
 }
 
@@ -90,5 +91,95 @@ fn with_jacobian(problem: &Problem, nuisance: &Nuisance, jacobian: &Jacobian) ->
     Nuisance {
         delta: stacked(&nuisance.delta, &generous(&jacobian.delta, problem.sample_ug)),
         sum: both.map(|((nuisance, sum), channel)| stacked(nuisance, &generous(sum, channel.sample))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::cells::width;
+    use crate::diagnose::example::{Recipe, dense, effect, near, problem, white};
+    use crate::diagnose::thresholds::GENEROUS;
+
+    fn with_sum(test: impl Fn(&Problem, &EffectSet, &EffectSet)) {
+        let campaign = Recipe { runs: 2, sum: true, ..Recipe::default() }.campaign();
+        let problem = problem(&campaign);
+        let lag = EffectSet::NONE.with(&effect("thermal-lag", &campaign), &[40.0]);
+        let gradient = EffectSet::NONE.with(&effect("thermal-gradient", &campaign), &[5e-3, 8.0]);
+        test(&problem, &lag, &gradient);
+    }
+
+    #[test]
+    fn without_effects_the_maps_alone_may_adapt() {
+        with_sum(|problem, _, _| {
+            let noises = white(problem, &EffectSet::NONE, 5.0);
+            let own = problem.forward.sum.as_ref().unwrap();
+            let none = &EffectSet::NONE;
+            for nuisance in [fixed(problem, none), free(problem, none), constrained(problem, none, &noises)] {
+                assert_eq!(nuisance.delta, problem.basis);
+                assert_eq!(nuisance.sum.as_ref(), Some(&own.nuisance));
+            }
+        });
+    }
+
+    #[test]
+    fn fixed_effects_that_leave_the_sum_free_show_in_it_as_they_show_in_the_difference() {
+        with_sum(|problem, lag, gradient| {
+            let maps = width(&problem.forward.sum.as_ref().unwrap().nuisance);
+            assert_eq!(width(fixed(problem, lag).sum.as_ref().unwrap()), maps);
+            let nuisance = fixed(problem, &lag.and(gradient));
+            assert_eq!(nuisance.delta, problem.basis);
+            let sum = nuisance.sum.unwrap();
+            assert_eq!(width(&sum), maps + 1);
+            let last = dense(&sum).columns(maps, 1).into_owned();
+            assert!(near(&last, &(dense(&problem.forward.alone_ug(gradient)) * FREE_IN_SUM), 1e-12));
+        });
+    }
+
+    #[test]
+    fn free_parameters_each_add_a_column_so_large_that_it_costs_nothing() {
+        with_sum(|problem, lag, gradient| {
+            let both = lag.and(gradient);
+            let nuisance = free(problem, &both);
+            let maps = width(&problem.basis);
+            assert_eq!(width(&nuisance.delta), maps + 3);
+            let all = dense(&nuisance.delta);
+            for column in maps..maps + 3 {
+                let largest = all.column(column).amax();
+                assert!((largest / (GENEROUS * problem.sample_ug) - 1.0).abs() < 1e-9, "{column}: {largest}");
+            }
+        });
+    }
+
+    #[test]
+    fn what_the_sum_tells_of_a_parameter_binds_it_and_what_it_does_not_tell_stays_free() {
+        with_sum(|problem, lag, gradient| {
+            let both = lag.and(gradient);
+            let noises = white(problem, &both, 5.0);
+            let (open, bound) = (free(problem, &both), constrained(problem, &both, &noises));
+            let maps = width(&problem.basis);
+            let largest = |nuisance: &Nuisance, column: usize| dense(&nuisance.delta).column(maps + column).amax();
+            // The lag's time constant is known to about a second from the sum; the gradient's two are as they were.
+            assert!(largest(&bound, 0) < 0.05 * largest(&open, 0), "{} {}", largest(&bound, 0), largest(&open, 0));
+            for column in [1, 2] {
+                assert!((largest(&bound, column) / largest(&open, column) - 1.0).abs() < 1e-12, "{column}");
+            }
+            // The column is the derivative times the parameter's standard uncertainty from the sum alone.
+            let residuals = problem.forward.residuals(&both);
+            let jacobian = problem.forward.jacobian(problem.forward.no_effects(), &both, &residuals);
+            let fixed = fixed(problem, &both);
+            let gls = Gls::new(
+                problem.cells(),
+                &noises.initial,
+                &noises.sum.unwrap(),
+                residuals.sum.as_ref().unwrap(),
+                fixed.sum.as_ref().unwrap(),
+            );
+            let of_lag: Columns =
+                jacobian.sum.as_ref().unwrap().iter().map(|run| run.columns(0, 1).into_owned()).collect();
+            let sigma = gls.unwrap().score(&of_lag).normal[(0, 0)].sqrt().recip();
+            let worked = dense(&jacobian.delta).columns(0, 1) * sigma;
+            assert!(near(&dense(&bound.delta).columns(maps, 1).into_owned(), &worked, 1e-6));
+        });
     }
 }

@@ -65,3 +65,71 @@ pub fn in_model(model: &Model, campaign: &Campaign, yardstick: &Yardstick) -> Re
     }
     Ok(known)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::cells::width;
+    use crate::diagnose::example::{self, HZ_PER_G, RANGE_C, Recipe, SUM_HZ_PER_C};
+    use crate::diagnose::problem::in_model;
+    use crate::model::ModelEffect;
+
+    fn refused(model: &Model, campaign: &Campaign) -> Option<DiagnoseError> {
+        let yardstick = yardstick(model, campaign).unwrap();
+        problem(model, &yardstick.campaign(campaign), &yardstick).err()
+    }
+
+    #[test]
+    fn the_models_integers_and_units_are_taken_over() {
+        let campaign = Recipe { sum: true, ..Recipe::default() }.campaign();
+        let problem = example::problem(&campaign);
+        let scale = scale(&example::model());
+        assert_eq!((scale.delta_f_half_span_hz, scale.temperature_half_span_c), (512.0, 32.0));
+        let range_c = problem.cells().range_c();
+        assert!((range_c.start() - RANGE_C.0).abs() < 1e-6 && (range_c.end() - RANGE_C.1).abs() < 1e-6, "{range_c:?}");
+        let per_c = problem.forward.sum.as_ref().unwrap().per_c;
+        assert!((per_c / (SUM_HZ_PER_C.abs() * 1e3) - 1.0).abs() < 1e-3, "{per_c}");
+        // The network's output weights are nothing, so only polynomials and outputs are left, and fewer than all.
+        assert!((20..50).contains(&width(&problem.basis)), "{}", width(&problem.basis));
+    }
+
+    #[test]
+    fn a_model_without_a_slope_is_refused_as_flat() {
+        let mut model = example::model();
+        model.scaling.line_g = [0.0, 0.0, 1.0 / 32.0, 0.0];
+        let found = refused(&model, &Recipe::default().campaign());
+        assert!(matches!(found, Some(DiagnoseError::Numbers(FLAT))), "{found:?}");
+    }
+
+    #[test]
+    fn a_campaign_in_which_no_neighbours_share_a_level_has_no_noise() {
+        let mut campaign = Recipe::default().campaign();
+        for run in &mut campaign.runs {
+            for (index, row) in run.rows.iter_mut().enumerate() {
+                let level_g = (index as f64).sin();
+                row.sample.delta_f_uhz += ((level_g - row.reference_g) * HZ_PER_G * 1e6) as i64;
+                row.reference_g = level_g;
+            }
+        }
+        let found = refused(&example::model(), &campaign);
+        assert!(matches!(found, Some(DiagnoseError::NoNoise)), "{found:?}");
+    }
+
+    #[test]
+    fn the_effects_of_a_model_are_known_with_their_values_and_one_that_is_not_there_is_an_error() {
+        let campaign = Recipe::default().campaign();
+        let mut model = example::model();
+        let effect = |name: &str, parameters: &[(&str, f64)]| ModelEffect {
+            name: name.to_owned(),
+            channel: None,
+            expression: None,
+            parameters: parameters.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+        };
+        model.effects = vec![effect("warm-up", &[("amplitude_g", 2e-4), ("tau_s", 500.0)])];
+        let yardstick = yardstick(&model, &campaign).unwrap();
+        let known = in_model(&model, &campaign, &yardstick).unwrap();
+        assert_eq!(known.coefficients.values, [[2e-4, 500.0]]);
+        model.effects = vec![effect("supply-voltage", &[("bias_g_per_v", 1e-3), ("nominal_v", 5.0)])];
+        assert!(in_model(&model, &campaign, &yardstick).is_err());
+    }
+}
