@@ -81,7 +81,8 @@ impl Candidate {
         Self { effect, values, amplitudes, kept: None }
     }
 
-    /// What a unit of each amplitude (or the effect as it is) adds to the residual once compensated, µg.
+    /// What a unit of each amplitude (or the effect as it is) adds to the residual once compensated, µg: of each run
+    /// cells × amplitudes (or × 1).
     pub fn delta(&self, problem: &Problem) -> Cow<'_, Columns> {
         match &self.kept {
             Some(made) => Cow::Borrowed(&made.delta),
@@ -89,7 +90,7 @@ impl Candidate {
         }
     }
 
-    /// The same of the sum of the frequencies, mHz, where it is [predicted](Self::predicts_sum).
+    /// The same of the sum of the frequencies, mHz, where it is [predicted](Self::predicts_sum); of the same shape.
     pub fn sum(&self, problem: &Problem) -> Option<Cow<'_, Columns>> {
         match &self.kept {
             Some(made) => made.sum.as_ref().map(Cow::Borrowed),

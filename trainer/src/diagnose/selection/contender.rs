@@ -85,3 +85,57 @@ pub fn best_of_each(order: Vec<Contender>) -> Vec<Contender> {
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use firmware_core::effect;
+
+    fn contender(name: &str, values: &[f64], delta_bic: f64) -> Contender {
+        let effect = Chosen::of(effect::about(name).unwrap());
+        Contender { effect, values: values.to_vec(), delta_bic, noises: None }
+    }
+
+    fn is_at_bound(name: &str, values: &[f64]) -> bool {
+        contender(name, values, 0.0).is_at_bound(&(-10.0..=50.0))
+    }
+
+    #[test]
+    fn a_shape_at_its_bound_was_stopped_unless_the_formula_has_a_sound_limit_there() {
+        // From 5 s to 36,000 s; a gradient from 0.5 s, where the rate is not smoothed at all, to 300 s.
+        assert!(is_at_bound("warm-up", &[1e-4, 5.2]) && is_at_bound("warm-up", &[1e-4, 35_000.0]));
+        assert!(!is_at_bound("warm-up", &[1e-4, 5.3]) && !is_at_bound("warm-up", &[1e-4, 34_000.0]));
+        assert!(!is_at_bound("thermal-gradient", &[1e-3, 0.5]) && is_at_bound("thermal-gradient", &[1e-3, 299.0]));
+        // An amplitude at its bound is a large effect.
+        assert!(!is_at_bound("warm-up", &[0.1, 600.0]));
+    }
+
+    #[test]
+    fn a_place_is_at_bound_where_nothing_was_measured_that_its_shift_could_reach() {
+        assert!(
+            !is_at_bound("mode-crossing", &[1e-4, 2.0, 49.0, 0.0])
+                && is_at_bound("mode-crossing", &[1e-4, 2.0, 51.0, 0.0])
+        );
+        assert!(
+            !is_at_bound("mode-crossing", &[1e-4, 2.0, 51.0, -3.0])
+                && is_at_bound("mode-crossing", &[1e-4, 2.0, 54.0, 3.0])
+        );
+        assert!(
+            is_at_bound("mode-crossing", &[1e-4, 2.0, -14.0, 3.0])
+                && !is_at_bound("mode-crossing", &[1e-4, 2.0, -12.0, 3.0])
+        );
+    }
+
+    #[test]
+    fn what_sits_at_a_place_starts_anew_at_each_width_and_nothing_else_does() {
+        let narrow = contender("mode-crossing", &[1e-4, 0.7, 20.0, 0.0], 1.0);
+        let wide = contender("mode-crossing", &[1e-4, 2.0, 20.0, 0.0], 2.0);
+        let elsewhere = contender("mode-crossing", &[3e-4, 0.7, 40.0, 5.0], 3.0);
+        assert!(narrow.is_same_effect(&wide) && !narrow.is_same_start(&wide) && narrow.is_same_start(&elsewhere));
+        let [soon, late] = [100.0, 900.0].map(|tau_s| contender("warm-up", &[1e-4, tau_s], 4.0));
+        assert!(soon.is_same_start(&late) && !soon.is_same_start(&narrow));
+        let best = best_of_each(vec![soon, elsewhere, late, wide, narrow]);
+        let found: Vec<(&str, f64)> = best.iter().map(|one| (one.effect.about.name, one.values[1])).collect();
+        assert_eq!(found, [("warm-up", 100.0), ("mode-crossing", 0.7)]);
+    }
+}

@@ -66,6 +66,7 @@ pub fn held_out(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -> Hel
 
 /// What may adapt where something is left out: the map, and the effects' parameters about as far as they
 /// could be known beforehand. What alone determines a parameter must not leave it at the mercy of noise.
+/// µg: of each run cells × (map's directions + free parameters).
 pub fn recalling(problem: &Problem, set: &EffectSet) -> Columns {
     let map = fixed(problem, set).delta;
     if set.effects.is_empty() {
@@ -122,6 +123,7 @@ fn squares_of_its_own(cells: &[Cell], residual: &DMatrix<f64>, begun: &[Vec<f64>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::example::{Moment, Recipe, dense, disturbed, effect, problem, white};
 
     const CELLS: usize = 20;
 
@@ -152,5 +154,74 @@ mod tests {
         };
         let (with, without) = (share(&[begun]), share(&[]));
         assert!((with - 1.0).abs() < 1e-9 && without < 0.7, "{with} {without}");
+    }
+
+    fn white_rows(problem: &Problem, runs: impl Iterator<Item = usize>, columns: &Columns) -> DMatrix<f64> {
+        let whiten = |run: usize| {
+            let cells = &problem.cells().runs[run].cells;
+            let sigma = |cell: &Cell| (25.0 / cell.samples + (problem.ug_per_c * cell.unseen_c).powi(2)).sqrt();
+            DMatrix::from_fn(cells.len(), columns[run].ncols(), |row, column| {
+                columns[run][(row, column)] / sigma(&cells[row])
+            })
+        };
+        dense(&runs.map(whiten).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn what_is_held_out_is_what_a_fit_to_the_other_runs_leaves() {
+        let still = Recipe::default().campaign();
+        let truth = EffectSet::NONE.with(&effect("warm-up", &still), &[2e-4, 500.0]);
+        let campaign = disturbed(still, &truth);
+        let problem = problem(&campaign);
+        let set = EffectSet::NONE.with(&truth.effects[0], &[1.5e-4, 700.0]);
+        let noises = white(&problem, &set, 5.0);
+        let found = held_out(&problem, &set, &noises);
+        let (residual, columns) = (problem.forward.residuals(&set).delta, recalling(&problem, &set));
+        let (mut squares, mut samples, mut deviance) = (0.0, 0.0, 0.0);
+        for run in 0..4 {
+            let others = || (0..4).filter(move |other| *other != run);
+            let (z, y) = (white_rows(&problem, others(), &columns), white_rows(&problem, others(), &residual));
+            let prior = DMatrix::identity(z.ncols(), z.ncols());
+            let learnt = (z.transpose() * &z + prior).lu().solve(&(z.transpose() * y)).unwrap();
+            let left = vec![&residual[run] - &columns[run] * learnt];
+            let cells = &problem.cells().runs[run].cells;
+            for (cell, value) in cells.iter().zip(left[0].iter()) {
+                squares += cell.samples * value * value + (cell.samples - 1.0) * problem.sample_ug.powi(2);
+                samples += cell.samples;
+            }
+            let mut whole = residual.clone();
+            whole[run] = left[0].clone();
+            deviance += white_rows(&problem, std::iter::once(run), &whole).norm_squared();
+        }
+        let worked_ug = f64::sqrt(squares / samples);
+        assert!((found.residual_ug / worked_ug - 1.0).abs() < 1e-6, "{} {worked_ug}", found.residual_ug);
+        assert!((found.deviance / deviance - 1.0).abs() < 1e-6, "{} {deviance}", found.deviance);
+        assert_eq!((found.parts, found.whole_runs), (4, true));
+        // With the effect's parameters free the others teach what it does in this one; without it nobody does.
+        let without = held_out(&problem, &EffectSet::NONE, &noises);
+        assert!(found.residual_ug < 10.0 && without.residual_ug > 3.0 * found.residual_ug, "{}", without.residual_ug);
+    }
+
+    #[test]
+    fn a_runs_own_offset_is_not_predictable_and_of_few_runs_parts_are_left_out() {
+        let bias_g = |moment: &Moment| [80e-6, -60e-6, 30e-6, -50e-6][moment.run];
+        let campaign = Recipe { bias_g: &bias_g, ..Recipe::default() }.campaign();
+        let whole = problem(&campaign);
+        let found = held_out(&whole, &EffectSet::NONE, &white(&whole, &EffectSet::NONE, 5.0));
+        assert!(
+            found.residual_ug > 40.0 && found.predictable_ug < 0.3 * found.residual_ug,
+            "{} {}",
+            found.residual_ug,
+            found.predictable_ug
+        );
+        assert!((found.structure_ug() - found.predictable_ug).abs() < 1e-12);
+        let campaign = Recipe { runs: 2, bias_g: &bias_g, ..Recipe::default() }.campaign();
+        let few = problem(&campaign);
+        let folds = folds(&few);
+        assert_eq!(folds.len(), PARTS_OF_FEW);
+        let covered: usize = folds.iter().map(|(_, rows)| rows.len()).sum();
+        assert_eq!(covered, few.cells().len());
+        let found = held_out(&few, &EffectSet::NONE, &white(&few, &EffectSet::NONE, 5.0));
+        assert!(!found.whole_runs && (found.structure_ug() - found.residual_ug).abs() < 1e-12);
     }
 }

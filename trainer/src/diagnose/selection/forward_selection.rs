@@ -137,3 +137,64 @@ impl<'a> Scene<'a> {
         Some((freed, noises))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::Campaign;
+    use crate::diagnose::example::{Recipe, disturbed, effect, problem};
+    use crate::diagnose::problem::{estimate, fixed};
+    use crate::diagnose::thresholds::LEAST_DELTA_BIC;
+
+    const NAMES: [&str; 4] = ["warm-up", "thermal-gradient", "thermal-hysteresis", "mode-crossing"];
+
+    fn found(campaign: &Campaign, known: &EffectSet) -> Option<Found> {
+        let problem = problem(campaign);
+        let shown = NAMES.map(|name| effect(name, campaign));
+        let candidates = Candidate::all(&problem, &shown);
+        let initial = initial_states(&problem, known);
+        let noises = estimate(&problem, &problem.forward.residuals(known), &fixed(&problem, known), &initial);
+        missing(&problem, known, &candidates, &noises)
+    }
+
+    fn with(name: &str, values: &[f64], sum: bool) -> (Campaign, EffectSet) {
+        let still = Recipe { sum, ..Recipe::default() }.campaign();
+        let truth = EffectSet::NONE.with(&effect(name, &still), values);
+        (disturbed(still, &truth), truth)
+    }
+
+    #[test]
+    fn the_effect_that_was_put_in_wins_with_its_values() {
+        for (name, values) in
+            [("warm-up", [2e-4, 500.0]), ("thermal-gradient", [5e-3, 60.0]), ("thermal-hysteresis", [1e-5, 8.0])]
+        {
+            let (campaign, _) = with(name, &values, false);
+            let found = found(&campaign, &EffectSet::NONE).unwrap();
+            let winner = &found.winner;
+            assert_eq!(winner.effect.about.name, name);
+            assert!(winner.delta_bic > LEAST_DELTA_BIC, "{name}: {}", winner.delta_bic);
+            assert!(found.rivals.iter().all(|rival| rival.delta_bic < winner.delta_bic), "{name}");
+            for (value, truth) in winner.values.iter().zip(values) {
+                assert!((value / truth - 1.0).abs() < 0.15, "{name}: {value} {truth}");
+            }
+        }
+    }
+
+    #[test]
+    fn on_noise_alone_nothing_is_worth_naming() {
+        for sum in [false, true] {
+            let campaign = Recipe { sum, ..Recipe::default() }.campaign();
+            let best = found(&campaign, &EffectSet::NONE).map_or(f64::NEG_INFINITY, |found| found.winner.delta_bic);
+            assert!(best < LEAST_DELTA_BIC, "{best}");
+        }
+    }
+
+    #[test]
+    fn what_is_known_is_not_missed() {
+        let (campaign, truth) = with("warm-up", &[2e-4, 500.0], false);
+        let best = found(&campaign, &truth);
+        assert!(best.is_none_or(
+            |found| found.winner.delta_bic < LEAST_DELTA_BIC && found.winner.effect.about.name != "warm-up"
+        ));
+    }
+}

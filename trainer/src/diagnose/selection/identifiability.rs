@@ -76,3 +76,58 @@ pub fn unobservable(campaign: &Campaign, screening: &Screening, known: &EffectSe
     // What the model has was seen when it was trained.
     all.filter(|one| !known.effects.iter().any(|effect| effect.about.name == one.effect)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{Moment, Recipe, effect, problem, white};
+
+    fn screened(recipe: &Recipe, names: &[&str]) -> (Vec<String>, Vec<(String, String)>) {
+        let campaign = recipe.campaign();
+        let (problem, none) = (problem(&campaign), EffectSet::NONE);
+        let shown: Vec<_> = names.iter().map(|name| effect(name, &campaign)).collect();
+        let candidates = Candidate::all(&problem, &shown);
+        let screening = Screening::new(&problem, &none, candidates, &white(&problem, &none, 5.0)).unwrap();
+        let mut visible: Vec<String> = screening.visible.iter().map(|one| one.effect.about.name.to_owned()).collect();
+        visible.dedup();
+        let hidden = unobservable(&campaign, &screening, &none);
+        (visible, hidden.into_iter().map(|one| (one.effect, one.why)).collect())
+    }
+
+    fn why<'a>(hidden: &'a [(String, String)], name: &str) -> Option<&'a str> {
+        hidden.iter().find(|(effect, _)| effect == name).map(|(_, why)| why.as_str())
+    }
+
+    #[test]
+    fn without_a_ramp_nothing_shows_that_follows_the_rate() {
+        let names = ["warm-up", "thermal-lag", "thermal-gradient"];
+        // All of a run's first ten minutes are one soak.
+        let (visible, hidden) = screened(&Recipe { rows: 30, ..Recipe::default() }, &names);
+        assert_eq!(visible, ["warm-up"]);
+        for name in ["thermal-lag", "thermal-gradient"] {
+            let why = why(&hidden, name).unwrap();
+            assert!(why.starts_with("nothing in this campaign excites it"), "{name}: {why}");
+        }
+        let (visible, hidden) = screened(&Recipe::default(), &names);
+        assert_eq!(visible, names);
+        assert!(names.iter().all(|name| why(&hidden, name).is_none()));
+    }
+
+    #[test]
+    fn what_has_no_channel_or_no_variation_in_it_is_said() {
+        let course = |_: &Moment| 5.0;
+        let recipe = Recipe { channel: Some(("supply_v", &course)), ..Recipe::default() };
+        let (visible, hidden) = screened(&recipe, &["supply-voltage", "warm-up"]);
+        assert_eq!(visible, ["warm-up"]);
+        assert!(why(&hidden, "supply-voltage").unwrap().starts_with("supply_v does not vary"), "{hidden:?}");
+        let (_, hidden) = screened(&Recipe::default(), &["warm-up"]);
+        assert_eq!(why(&hidden, "supply-voltage"), Some("no supply_v column"));
+    }
+
+    #[test]
+    fn what_a_static_map_does_as_well_is_taken_up_by_it() {
+        let (visible, hidden) = screened(&Recipe::default(), &["second-order", "warm-up"]);
+        assert_eq!(visible, ["warm-up"]);
+        assert!(why(&hidden, "second-order").unwrap().starts_with("the static calibration takes it up"), "{hidden:?}");
+    }
+}

@@ -70,3 +70,51 @@ pub fn most_predictive(
     let winner = order.next()?;
     Some(Found { winner, rivals: order.collect(), at_bound: f64::NEG_INFINITY, noises: noises.clone() })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::Campaign;
+    use crate::diagnose::example::{Recipe, disturbed, effect, problem, white};
+
+    fn warmed_up() -> (Campaign, EffectSet) {
+        let still = Recipe::default().campaign();
+        let truth = EffectSet::NONE.with(&effect("warm-up", &still), &[2e-4, 500.0]);
+        (disturbed(still, &truth), truth)
+    }
+
+    fn contender(problem: &Problem, set: &EffectSet, values: &[f64]) -> Contender {
+        let noises = Some(white(problem, &EffectSet::NONE, 5.0));
+        Contender { effect: set.effects[0].clone(), values: values.to_vec(), delta_bic: 100.0, noises }
+    }
+
+    #[test]
+    fn what_is_there_predicts_other_runs_and_what_is_not_there_does_not() {
+        let (campaign, truth) = warmed_up();
+        let still = Recipe::default().campaign();
+        let none = EffectSet::NONE;
+        let (with, without) = (problem(&campaign), problem(&still));
+        assert_eq!(is_predictive(&with, &none, &contender(&with, &truth, &[2e-4, 500.0])), Some(true));
+        assert_eq!(is_predictive(&without, &none, &contender(&without, &truth, &[2e-4, 500.0])), Some(false));
+        let unjudged = Contender { noises: None, ..contender(&with, &truth, &[2e-4, 500.0]) };
+        assert_eq!(is_predictive(&with, &none, &unjudged), None);
+    }
+
+    #[test]
+    fn the_effect_that_halves_what_is_left_out_is_named_and_none_on_noise() {
+        let (campaign, truth) = warmed_up();
+        let still = Recipe::default().campaign();
+        let named = |campaign: &Campaign| {
+            let problem = problem(campaign);
+            let shown = ["warm-up", "thermal-gradient", "thermal-hysteresis"].map(|name| effect(name, campaign));
+            let candidates = Candidate::all(&problem, &shown);
+            most_predictive(&problem, &EffectSet::NONE, &candidates, &white(&problem, &EffectSet::NONE, 5.0))
+        };
+        let found = named(&campaign).unwrap();
+        assert_eq!(found.winner.effect.about.name, "warm-up");
+        for (value, truth) in found.winner.values.iter().zip(&truth.coefficients.values[0]) {
+            assert!((value / truth - 1.0).abs() < 0.1, "{value} {truth}");
+        }
+        assert!(named(&still).is_none());
+    }
+}
