@@ -206,3 +206,82 @@ impl Scene<'_> {
         Some(LackOfFit { depends_on, period_s: None, delta_bic, size_ug: self.noise[Component::Pose] })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{Gauss, Moment, Recipe, problem};
+    use crate::diagnose::problem::{estimate, fixed, initial_states};
+    use std::f64::consts::TAU;
+
+    fn found(recipe: &Recipe) -> Vec<LackOfFit> {
+        let campaign = recipe.campaign();
+        let (problem, none) = (problem(&campaign), EffectSet::NONE);
+        let residuals = problem.forward.residuals(&none);
+        let noises = estimate(&problem, &residuals, &fixed(&problem, &none), &initial_states(&problem, &none));
+        lack_of_fit(&problem, &none, &noises, &campaign.channels)
+    }
+
+    fn with(bias_g: &dyn Fn(&Moment) -> f64) -> Vec<LackOfFit> {
+        found(&Recipe { bias_g, ..Recipe::default() })
+    }
+
+    fn named<'a>(found: &'a [LackOfFit], on: &[&str]) -> Option<&'a LackOfFit> {
+        found.iter().find(|one| one.depends_on == on)
+    }
+
+    #[test]
+    fn noise_lacks_nothing() {
+        let (white, offsets) = (with(&|_| 0.0), with(&|moment| [70e-6, -40e-6, 20e-6, -60e-6][moment.run]));
+        assert!(white.is_empty() && offsets.is_empty(), "{white:?} {offsets:?}");
+    }
+
+    #[test]
+    fn a_kink_at_0_g_is_rectification() {
+        let found = with(&|moment| 60e-6 * moment.level_g.abs());
+        let kink = named(&found, &["reference_g"]).unwrap();
+        assert!(kink.delta_bic > LEAST_RECTIFIED && kink.size_ug > 5.0, "{kink:?}");
+    }
+
+    #[test]
+    fn a_run_with_a_course_over_temperature_of_its_own_is_an_odd_run() {
+        let found = with(&|moment| if moment.run == 2 { 3e-6 * (moment.temperature_c - 20.0) } else { 0.0 });
+        let odd = named(&found, &["run", "temperature_c"]).unwrap();
+        assert!(odd.delta_bic > LEAST_LACK_OF_FIT && odd.size_ug > 10.0, "{odd:?}");
+    }
+
+    #[test]
+    fn a_period_is_named_with_its_length_and_its_size() {
+        let found = with(&|moment| 40e-6 * (TAU * moment.time_s / 310.0 + moment.run as f64).sin());
+        let periodic = found.iter().find(|one| one.period_s.is_some()).unwrap();
+        assert_eq!(periodic.depends_on, ["time_s"]);
+        assert!((periodic.period_s.unwrap() / 310.0 - 1.0).abs() < 0.05, "{periodic:?}");
+        // What a wander could be is not counted.
+        assert!((5.0..36.0).contains(&periodic.size_ug), "{periodic:?}");
+    }
+
+    #[test]
+    fn a_channels_course_is_named_after_the_channel() {
+        let mut gauss = Gauss::new(11);
+        let values: Vec<f64> = (0..64).map(|_| gauss.next()).collect();
+        // New every ten minutes.
+        let course = |moment: &Moment| values[(moment.run * 13 + (moment.time_s / 600.0) as usize) % values.len()];
+        let bias_g = |moment: &Moment| 40e-6 * course(moment);
+        let found = found(&Recipe { channel: Some(("stranger", &course)), bias_g: &bias_g, ..Recipe::default() });
+        let channel = named(&found, &["stranger"]).unwrap();
+        assert!(channel.delta_bic > LEAST_LACK_OF_FIT && (20.0..60.0).contains(&channel.size_ug), "{found:?}");
+    }
+
+    #[test]
+    fn what_matters_is_half_the_noise_of_a_sample() {
+        let campaign = Recipe::default().campaign();
+        let problem = problem(&campaign);
+        let of_size = |share: f64| LackOfFit {
+            depends_on: Vec::new(),
+            period_s: None,
+            delta_bic: 1e3,
+            size_ug: share * problem.sample_ug,
+        };
+        assert!(matters(&problem, &of_size(0.51)) && !matters(&problem, &of_size(0.49)));
+    }
+}

@@ -42,7 +42,7 @@ pub fn dependences(
     all
 }
 
-/// Every quantity that varies, and smooth functions of it.
+/// Every quantity that varies, and smooth functions of it: of each run cells × their degree, without a unit.
 pub fn followed(problem: &Problem, channels: &[String]) -> Vec<(String, Columns)> {
     let of = |quantity: Quantity| Some((quantity.name, smooth(&quantity.values)?));
     quantities(problem, channels).into_iter().filter_map(of).collect()
@@ -133,6 +133,7 @@ fn upper_tail(z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::example::{Moment, Recipe, problem, white};
 
     #[test]
     fn chances_are_those_of_the_tables() {
@@ -143,5 +144,59 @@ mod tests {
             assert!((found / table - 1.0).abs() < 0.06, "{value} at {freedom}: {found}");
         }
         assert!((upper_tail(0.0) - 0.5).abs() < 1e-6 && (upper_tail(-1.959_964) - 0.975).abs() < 1e-6);
+    }
+
+    fn found(bias_g: &dyn Fn(&Moment) -> f64) -> Vec<Dependence> {
+        let course = |moment: &Moment| slow(moment);
+        let campaign = Recipe { channel: Some(("stranger", &course)), bias_g, ..Recipe::default() }.campaign();
+        let (problem, none) = (problem(&campaign), EffectSet::NONE);
+        dependences(&problem, &none, &none, &white(&problem, &none, 5.0), &campaign.channels)
+    }
+
+    /// From −1 to 1, of a period that nothing else has.
+    fn slow(moment: &Moment) -> f64 {
+        ((moment.time_s + 1700.0 * moment.run as f64) / 90.0).sin()
+    }
+
+    #[test]
+    fn the_quantity_that_the_residual_follows_comes_first_with_its_size() {
+        let all = found(&|moment| 40e-6 * slow(moment));
+        let first = &all[0];
+        assert_eq!(first.on, "stranger");
+        assert!(
+            (12.0..32.0).contains(&first.before_ug) && first.chance_before < 1e-12,
+            "{} {}",
+            first.before_ug,
+            first.chance_before
+        );
+        assert!(all[1..].iter().all(|other| other.before_ug < 0.6 * first.before_ug), "{}", all[1].on);
+        assert!((first.before_ug - first.after_ug).abs() < 1e-12);
+        // Ages are not known, and power came with the clock.
+        assert!(all.iter().all(|one| one.on != "age_days") && all.iter().any(|one| one.on == "power_on_s"));
+    }
+
+    #[test]
+    fn noise_follows_nothing() {
+        for one in found(&|_| 0.0) {
+            assert!(
+                one.before_ug < 2.0 && one.chance_before > 1e-4,
+                "{}: {} {}",
+                one.on,
+                one.before_ug,
+                one.chance_before
+            );
+        }
+    }
+
+    #[test]
+    fn what_has_few_values_has_few_powers_and_what_has_one_has_none() {
+        assert!(smooth(&[vec![3.0; 4], vec![3.0; 2]]).is_none());
+        let two = smooth(&[vec![3.0, 3.0, 7.0], vec![7.0]]).unwrap();
+        // The middle of each value's ranks, from −1 to 1.
+        assert_eq!(two[0].as_slice(), [-0.5, -0.5, 0.5]);
+        assert_eq!(two[1].as_slice(), [0.5]);
+        let many = smooth(&[(0..50).map(f64::from).collect()]).unwrap();
+        assert_eq!(many[0].ncols(), DEPENDENCE_DEGREE);
+        assert!((many[0][(0, 1)] - 0.98_f64.powi(2)).abs() < 1e-12);
     }
 }

@@ -46,7 +46,7 @@ impl Course {
         }
     }
 
-    /// With its zeros.
+    /// With its zeros, µg per amplitude: of each run cells × [`width`](Self::width).
     pub fn whole(&self, cells: &Cells) -> Columns {
         let (run, own) = match self {
             Self::All(columns) => return columns.clone(),
@@ -141,7 +141,7 @@ pub fn rectified(problem: &Problem) -> Alternative {
     Alternative { depends_on: vec!["reference_g".to_owned()], period_s: None, course: Course::All(columns) }
 }
 
-/// For each level, one wherever it was applied.
+/// For each level, one wherever it was applied: of each run cells × levels, without a unit.
 pub fn levels(problem: &Problem) -> Columns {
     let level = |cell: &Cell, per_level: f64| (cell.level_g * per_level).round() as i64;
     let told_apart = |per_level: f64| -> Vec<i64> {
@@ -158,4 +158,80 @@ pub fn levels(problem: &Problem) -> Columns {
         DMatrix::from_fn(run.cells.len(), distinct.len(), |row, column| f64::from(u8::from(here(row, column))))
     };
     problem.cells().runs.iter().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{Recipe, dense, problem};
+
+    fn whole(problem: &Problem, alternative: &Alternative) -> DMatrix<f64> {
+        dense(&alternative.course.whole(problem.cells()))
+    }
+
+    #[test]
+    fn a_kink_is_even_and_an_odd_square_and_levels_are_told_apart() {
+        let campaign = Recipe::default().campaign();
+        let problem = problem(&campaign);
+        let (kink, levels) = (whole(&problem, &rectified(&problem)), dense(&levels(&problem)));
+        assert_eq!(levels.ncols(), 5);
+        for (row, cell) in problem.cells().iter().enumerate() {
+            let worked =
+                [cell.level_g.abs(), cell.level_g.signum() * cell.level_g.powi(2)].map(|v| v * problem.sample_ug);
+            assert!((kink[(row, 0)] - worked[0]).abs() < 1e-12 && (kink[(row, 1)] - worked[1]).abs() < 1e-12);
+            assert_eq!(levels.row(row).sum(), 1.0);
+        }
+        // −1, −0.5, 0, 0.5, 1 in order, each where it was applied.
+        let applied = problem.cells().iter().filter(|cell| (cell.level_g + 1.0).abs() < 1e-6).count();
+        assert_eq!(levels.column(0).sum(), applied as f64);
+    }
+
+    #[test]
+    fn each_run_has_a_course_over_temperature_of_its_own_unless_it_has_none() {
+        let soaked = Recipe { rows: 30, ..Recipe::default() }.campaign();
+        assert!(odd_runs(&problem(&soaked)).is_empty());
+        let campaign = Recipe::default().campaign();
+        let problem = problem(&campaign);
+        let odd = odd_runs(&problem);
+        assert_eq!(odd.len(), 4);
+        let course = whole(&problem, &odd[2]);
+        let [before, own] =
+            [0..2, 2..3].map(|runs| runs.map(|run: usize| problem.cells().runs[run].cells.len()).sum::<usize>());
+        assert!(
+            course.rows(0, before).amax() == 0.0
+                && course.rows(before + own, course.nrows() - before - own).amax() == 0.0
+        );
+        let own = course.rows(before, own);
+        assert!(own.mean().abs() < 1e-9 * own.amax() && own.amax() > 0.5 * problem.sample_ug);
+    }
+
+    #[test]
+    fn an_extremum_only_grows_over_the_runs_in_the_order_of_their_dates() {
+        let mut campaign = Recipe { days_apart: Some(1), ..Recipe::default() }.campaign();
+        // Now the last run comes first.
+        campaign.runs.rotate_right(1);
+        let problem = problem(&campaign);
+        let order = [1, 2, 3, 0];
+        for (alternative, sign) in running_extrema(&problem).iter().zip([1.0, -1.0]) {
+            let courses = alternative.course.whole(problem.cells());
+            let mut farthest = f64::NEG_INFINITY;
+            for run in order {
+                for (cell, value) in problem.cells().runs[run].cells.iter().zip(courses[run].iter()) {
+                    farthest = farthest.max(sign * cell.t);
+                    assert!((value - farthest * problem.sample_ug).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_day_is_looked_for_where_the_calendar_is_known_and_followed_long_enough() {
+        let days_in = |recipe: &Recipe| days(&problem(&recipe.campaign())).len();
+        // Each run is followed for 75 minutes: 1.5 tides take 15 runs, 1.5 days 29.
+        let few = Recipe { runs: 4, days_apart: Some(1), ..Recipe::default() };
+        let some = Recipe { runs: 16, days_apart: Some(1), ..Recipe::default() };
+        let many = Recipe { runs: 30, days_apart: Some(1), ..Recipe::default() };
+        assert_eq!([&few, &some, &many].map(days_in), [0, 2, 4]);
+        assert_eq!(days_in(&Recipe { days_apart: None, ..many }), 0);
+    }
 }
