@@ -183,14 +183,14 @@ mod tests {
             let (z, y) = (white_rows(&problem, others(), &columns), white_rows(&problem, others(), &residual));
             let prior = DMatrix::identity(z.ncols(), z.ncols());
             let learnt = (z.transpose() * &z + prior).lu().solve(&(z.transpose() * y)).unwrap();
-            let left = vec![&residual[run] - &columns[run] * learnt];
+            let left = &residual[run] - &columns[run] * learnt;
             let cells = &problem.cells().runs[run].cells;
-            for (cell, value) in cells.iter().zip(left[0].iter()) {
+            for (cell, value) in cells.iter().zip(left.iter()) {
                 squares += cell.samples * value * value + (cell.samples - 1.0) * problem.sample_ug.powi(2);
                 samples += cell.samples;
             }
             let mut whole = residual.clone();
-            whole[run] = left[0].clone();
+            whole[run] = left;
             deviance += white_rows(&problem, std::iter::once(run), &whole).norm_squared();
         }
         let worked_ug = f64::sqrt(squares / samples);
