@@ -101,6 +101,13 @@ mod tests {
     }
 
     #[test]
+    fn two_whole_periods_late_is_out_of_step() {
+        let mut stream = stream(10);
+        let due = [5, 20_004, 20_006, 40_005, 40_006].map(|time_us| due(&mut stream, time_us));
+        assert_eq!(due, [Some(0), Some(1), Some(2), Some(3), None], "less than that is made up for");
+    }
+
+    #[test]
     fn periods_out_of_bounds_are_refused_with_the_bounds() {
         for period_ms in [0, 9, 3_600_001, u32::MAX] {
             let refusal = Refusal::Period { shortest_ms: 10, longest_ms: 3_600_000 };

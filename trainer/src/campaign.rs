@@ -30,6 +30,8 @@ mod bad_campaign;
 #[cfg(test)]
 mod bad_input;
 #[cfg(test)]
+mod edges;
+#[cfg(test)]
 mod hostile;
 #[cfg(test)]
 mod tests;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Where something was found.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The file as the caller named it; empty for the campaign as a whole.
     pub file: PathBuf,
@@ -33,7 +33,7 @@ impl Place {
     /// The campaign as a whole.
     #[must_use]
     pub fn campaign() -> Self {
-        Self::default()
+        Self { file: PathBuf::new(), line: None, column: None }
     }
 
     /// A file as a whole.
@@ -329,5 +329,20 @@ pub(super) fn quoted(cell: &[u8]) -> String {
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{:?}…", text.get(..end).unwrap_or_default()),
         None => format!("{text:?}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_names_forty_and_counts_the_rest() {
+        let names = |count: usize| -> Vec<String> { (1..=count).map(|number| format!("c{number}")).collect() };
+        assert_eq!(list("runs", &[]), "no runs");
+        assert_eq!(list("runs", &names(2)), "runs c1, c2");
+        assert!(list("columns", &names(40)).ends_with(", c39, c40"));
+        assert!(list("columns", &names(41)).ends_with(", c40 and 1 more"));
+        assert!(list("columns", &names(100)).ends_with(", c40 and 60 more"));
     }
 }

@@ -22,3 +22,27 @@ pub(super) fn bytes(count: u64) -> String {
         _ => format!("{:.1} GiB", count as f64 / 1_073_741_824.0),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_counted_in_the_largest_unit_that_they_fill() {
+        for (count, text) in [
+            (0, "0 bytes"),
+            (1_023, "1023 bytes"),
+            (1_024, "1 KiB"),
+            (1_048_575, "1024 KiB"),
+            (1_048_576, "1 MiB"),
+            (MAX_FILE - 1, "1024 MiB"),
+            (MAX_FILE, "1.0 GiB"),
+            (3 << 29, "1.5 GiB"),
+            (MAX_MANIFEST, "1 MiB"),
+            (MAX_RECORD as u64, "1 MiB"),
+        ] {
+            assert_eq!(bytes(count), text);
+        }
+        assert_eq!(MAX_UPTIME_US, 316_224_000_000_000, "3660 days");
+    }
+}

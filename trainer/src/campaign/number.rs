@@ -43,13 +43,14 @@ impl Decimal {
             [b'+', rest @ ..] => (false, rest),
             rest => (false, rest),
         };
-        let (mut mantissa, mut exponent, mut digits, mut point, mut length) = (0_u64, 0_i32, 0, false, 0);
+        let (mut mantissa, mut exponent, mut length) = (0_u64, 0_i32, 0);
+        let (mut any, mut point) = (false, false);
         for &byte in unsigned {
             match byte {
                 b'0'..=b'9' if mantissa < NEARLY_FULL => {
                     mantissa = mantissa * 10 + u64::from(byte - b'0');
                     exponent -= i32::from(point);
-                    digits += 1;
+                    any = true;
                 }
                 // Digits beyond the nineteenth move the point only: they lie far below any step we keep.
                 b'0'..=b'9' => exponent += i32::from(!point),
@@ -59,7 +60,7 @@ impl Decimal {
             length += 1;
         }
         let tail = unsigned.get(length..).unwrap_or_default();
-        if digits == 0 {
+        if !any {
             return Err(if is_not_finite(unsigned) { NotDecimal::NotFinite } else { NotDecimal::Text });
         }
         let exponent = (exponent + exponent_of(tail)?).clamp(-EXPONENT, EXPONENT);
@@ -296,6 +297,14 @@ mod tests {
         assert_eq!(micro("1638974512345678901", "*1e-9"), Some(1_638_974_512_345_679));
         assert_eq!(micro("1638974512345678901", " * 1e-9 - 1638974512"), Some(345_679));
         assert_eq!(micro("1638974512345678901", "/1000000000"), Some(1_638_974_512_345_679));
+        assert_eq!(micro("123456789012345678901234", "*1e-12"), Some(123_456_789_012_345_679), "more than nineteen");
+    }
+
+    #[test]
+    fn a_float_is_the_nearest_to_what_is_written() {
+        for (text, expected) in [("0.3", 0.3), ("-0.7", -0.7), ("3e2", 300.0), ("12", 12.0), ("1e23", 1e23)] {
+            assert_eq!(Decimal::parse(text.as_bytes()).expect("a number").to_f64(), expected, "{text}");
+        }
     }
 
     #[test]
@@ -307,6 +316,39 @@ mod tests {
         for bad in ["*", "*x", "3", "*0", "/0", "+", "*2*3", "+1e-3+2"] {
             assert_eq!(Conversion::parse(bad), None, "{bad}");
         }
+    }
+
+    #[test]
+    fn a_float_is_converted_and_keeps_its_digits() {
+        for (number, conversion, expected) in [
+            (3.0, "*0.1", 0.3),
+            (3.0, "/10", 0.3),
+            (2.0, "*1e3", 2000.0),
+            (2.0, "*1e3 + 0.5", 2000.5),
+            (2.0, "-273.15", -271.15),
+            (212.0, "*0.5-6", 100.0),
+            (1.5, "", 1.5),
+        ] {
+            assert_eq!(Conversion::parse(conversion).expect("a conversion").real(number), expected, "{conversion}");
+        }
+    }
+
+    #[test]
+    fn the_last_digit_reaches_as_far_as_the_unit_lets_it() {
+        for (text, conversion, expected_u) in
+            [("0.12", "", 1e4), ("7", "", 1e6), ("0.12", "*-2", 2e4), ("0.12", "/1000", 10.0), ("0.1234567", "", 1.0)]
+        {
+            let number = Decimal::parse(text.as_bytes()).expect("a number");
+            let step_u = Conversion::parse(conversion).expect("a conversion").step_micro(number);
+            assert!((step_u / expected_u - 1.0).abs() < 1e-12, "{text} {conversion}: {step_u}");
+        }
+    }
+
+    #[test]
+    fn the_largest_whole_number_is_the_last_float_below_two_to_the_63() {
+        let bound = 2.0_f64.powi(63);
+        assert_eq!((whole(bound), whole(-bound), whole(2.5)), (None, None, Some(3)));
+        assert_eq!(whole(bound.next_down()), Some(i64::MAX - 1023));
     }
 
     #[test]

@@ -194,3 +194,45 @@ fn not_understood(path: &Path, text: &str, error: &toml::de::Error) -> CampaignE
     let found = format!("{} ({found})", quoted(content.as_bytes()));
     CampaignError::Manifest(Facts::boxed(Place::file(path).line(line), found, expected))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn options(text: &str) -> ReadOptions {
+        toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"))
+    }
+
+    #[test]
+    fn one_way_to_say_the_signal_or_the_reference_silences_the_others_below_it() {
+        let signal = "[signal]\ncolumn = 'v'\nunit = 'mV'\n";
+        let reference = "[reference]\ncolumn = 'kg'\nunit = 'kg'\n";
+        for (above, below, expected) in [
+            (
+                "[columns]\nf1_hz = 'a'",
+                &format!("{signal}[columns]\ndelta_f_hz = 'd'\ntime_s = 't'")[..],
+                "[columns]\nf1_hz = 'a'\ntime_s = 't'",
+            ),
+            (signal, "[columns]\nf1_hz = 'a'\nf2_hz = 'b'", signal),
+            (
+                "[columns]\nreference_g = 'r'",
+                &format!("constant_reference = 1.0\n{reference}"),
+                "[columns]\nreference_g = 'r'",
+            ),
+            (reference, "constant_reference = 1.0\n[columns]\nreference_g = 'r'", reference),
+            ("constant_reference = 2.0", &format!("constant_reference = 1.0\n{reference}"), "constant_reference = 2.0"),
+            ("channels = ['a']", &format!("{signal}{reference}"), &format!("channels = ['a']\n{signal}{reference}")),
+            ("ignore = ['a']", "ignore = ['a', 'b']\nchannels = ['c']", "ignore = ['a', 'b']\nchannels = ['c']"),
+        ] {
+            assert_eq!(options(above).over(&options(below)), options(expected), "{above} over {below}");
+        }
+    }
+
+    #[test]
+    fn options_that_say_anything_are_not_empty() {
+        let said = options("constant_reference = 0.0");
+        assert!(ReadOptions::default().is_empty() && !said.is_empty() && ReadAs::default().is_empty());
+        let by_caller = ReadAs { options: said.clone(), ..ReadAs::default() };
+        assert!(!by_caller.is_empty() && !ReadAs { manifest: said, ..ReadAs::default() }.is_empty());
+    }
+}

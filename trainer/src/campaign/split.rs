@@ -132,6 +132,7 @@ mod tests {
             (&[UNSTATED, UNSTATED, UNSTATED], HoldOut::LastOfEachKind, &[2], Basis::LastOfEachKind),
             (&["full", "ramp", "zero"], HoldOut::LastOfEachKind, &[2], Basis::LastRun),
             (&["full", "ramp", "zero"], named(&["run-1", "run-0", "run-1"]), &[0, 1], Basis::Named),
+            (&["full", "ramp"], HoldOut::LastOfEachKind, &[1], Basis::LastRun),
             (&["full", "full"], HoldOut::None, &[], Basis::Nothing),
             (&["full"], HoldOut::None, &[], Basis::Nothing),
         ] {

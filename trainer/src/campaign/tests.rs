@@ -35,7 +35,7 @@ impl Folder {
         self.0.join(name)
     }
 
-    fn read(&self, options: &ReadOptions) -> Result<Campaign, CampaignError> {
+    pub(super) fn read(&self, options: &ReadOptions) -> Result<Campaign, CampaignError> {
         Campaign::read(std::slice::from_ref(&self.0), options)
     }
 }
@@ -57,11 +57,11 @@ fn channels(measured: &[i64]) -> [i64; MAX_CHANNELS] {
     std::array::from_fn(|channel| measured.get(channel).copied().unwrap_or(Sample::NOT_MEASURED))
 }
 
-fn campaign(content: &str) -> Campaign {
+pub(super) fn campaign(content: &str) -> Campaign {
     campaign_of(content, &ReadOptions::default())
 }
 
-fn campaign_of(content: &str, options: &ReadOptions) -> Campaign {
+pub(super) fn campaign_of(content: &str, options: &ReadOptions) -> Campaign {
     let folder = Folder::with(&[("run-01.csv", content.as_bytes())]);
     folder.read(options).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -128,9 +128,14 @@ fn the_hash_knows_the_content_and_nothing_else() {
         format!("{header},a_v,b_v,run\n0,1,2,3,4,5,another\n"),
         format!("{header},a_v,b_v,kind\n0,1,2,3,4,5,ramp\n"),
         format!("{header},a_v,b_v,power_on_s\n0,1,2,3,4,5,6\n"),
+        format!("{header},a_v,b_v,age_days\n0,1,2,3,4,5,6\n"),
+        format!("{header},a_v,b_v,sum_f_hz\n0,1,2,3,4,5,6\n"),
+        format!("{header},a_v,b_v,reference_sigma_g\n0,1,2,3,4,5,6\n"),
     ] {
         assert_ne!(original, hash(&other), "{other}");
     }
+    let named = |run: &str, kind: &str| hash(&format!("run,kind,{header}\n{run},{kind},0,1,2,3\n"));
+    assert_ne!(named("ab", "c"), named("a", "bc"), "where one name ends and the next begins");
 }
 
 #[test]

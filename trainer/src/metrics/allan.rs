@@ -56,3 +56,58 @@ fn point(integral: &[f64], m: usize, interval_s: f64) -> AllanPoint {
         relative_uncertainty: (2.0 * (samples as f64 / width - 1.0)).sqrt().recip(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::Row;
+    use protocol::Sample;
+    use std::path::PathBuf;
+
+    /// A recording at rest with rows at these times, s.
+    fn run(times_s: impl IntoIterator<Item = f64>) -> Run {
+        let row = |time_s: f64| Row {
+            sample: Sample::from_difference((time_s * 1e6).round() as u64, 0, 0),
+            reference_g: 0.0,
+            reference_sigma_g: None,
+        };
+        let rows = times_s.into_iter().map(row).collect();
+        Run { name: "zero".into(), kind: "zero".into(), source: PathBuf::new(), rows }
+    }
+
+    fn near(found: f64, expected: f64) -> bool {
+        (found - expected).abs() < 1e-9 * expected.abs().max(1.0)
+    }
+
+    #[test]
+    fn an_alternation_deviates_by_root_two_at_one_sample_and_by_nothing_at_two() {
+        let outputs_g: Vec<f64> = (0..64).map(|k| if k % 2 == 0 { 1e-6 } else { -1e-6 }).collect();
+        let points = allan(&run((0..64).map(|k| f64::from(k) * 0.5)), &outputs_g).expect("64 samples");
+        assert_eq!(points.iter().map(|point| point.tau_s).collect::<Vec<_>>(), [0.5, 1.0, 2.0, 4.0, 8.0]);
+        assert!(near(points[0].deviation_ug, std::f64::consts::SQRT_2), "{points:?}");
+        assert!(points[1..].iter().all(|point| point.deviation_ug < 1e-9), "{points:?}");
+    }
+
+    #[test]
+    fn a_drift_deviates_by_its_change_over_the_averaging_time_over_root_two() {
+        let outputs_g: Vec<f64> = (0..100).map(|k| f64::from(k) * 3e-6).collect();
+        let points = allan(&run((0..100).map(|k| f64::from(k) * 2.0)), &outputs_g).expect("100 samples");
+        assert_eq!(points.len(), 5, "1 to 16 of 100 samples");
+        for (point, m) in points.iter().zip([1.0, 2.0, 4.0, 8.0, 16.0]) {
+            assert!(near(point.tau_s, 2.0 * m) && near(point.deviation_ug, 3.0 * m / 2.0_f64.sqrt()), "{point:?}");
+            assert!(near(point.relative_uncertainty, 1.0 / (2.0 * (100.0 / m - 1.0)).sqrt()), "{point:?}");
+        }
+    }
+
+    #[test]
+    fn a_short_or_uneven_recording_has_no_plot() {
+        let plot = |times_s: Vec<f64>| allan(&run(times_s.clone()), &vec![0.0; times_s.len()]);
+        let even = |count: u32| (0..count).map(|k| f64::from(k) * 100.0).collect::<Vec<f64>>();
+        assert!(plot(even(63)).is_none() && plot(even(64)).is_some());
+        let stretched =
+            |by_s: f64| even(64).into_iter().map(move |time_s| if time_s > 3000.0 { time_s + by_s } else { time_s });
+        assert!(plot(stretched(1.0).collect()).is_some(), "a hundredth is no gap");
+        assert!(plot(stretched(1.1).collect()).is_none() && plot(stretched(-1.1).collect()).is_none());
+        assert!(plot(stretched(3000.0).collect()).is_none());
+    }
+}

@@ -37,6 +37,8 @@ mod tests {
         }
         let at_rest: Vec<f64> = (0..100).map(|k| f64::from(k * 17 % 41) * 1e-6).collect();
         assert!(level_width(&at_rest) > span(&at_rest), "noise is no level");
+        // Steps of 1 to 5: the usual one is 3.
+        assert!((level_width(&[0.0, 5.0, 9.0, 12.0, 14.0, 15.0]) - 30.0).abs() < 1e-12);
         assert_eq!((level_width(&[1.0; 9]), level_width(&[]), span(&[])), (0.0, 0.0, 0.0));
     }
 }

@@ -180,3 +180,22 @@ fn ignore(name: &str) -> String {
 fn column(facts: &Facts) -> (&str, &str) {
     facts.place.column.as_ref().map_or(("", ""), |Column { name, meaning, .. }| (name, meaning))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::error::Place;
+    use super::*;
+
+    #[test]
+    fn what_cant_be_read_has_advice_of_its_own() {
+        let facts = || Facts::boxed(Place::campaign(), "this", "that");
+        for (error, advice) in [
+            (CampaignError::Unreadable(facts()), "may be read"),
+            (CampaignError::NotAFile(facts()), "cat PIPE"),
+            (CampaignError::TooLarge(facts()), "Divide it"),
+            (CampaignError::TooLong(facts()), "separator"),
+        ] {
+            assert!(error.help().contains(advice), "{error:?}: {}", error.help());
+        }
+    }
+}
