@@ -121,6 +121,59 @@ mod tests {
     fn what_is_not_there_is_zero_and_never_negative() {
         let model = AllanModel::fit(&points(|tau| 16.0 / tau * (1.0 - 0.01 * tau.log2() / 9.0))).expect("enough");
         assert!((model.white_ug_sqrt_s.value - 4.0).abs() < 0.05);
-        assert_eq!((model.flicker_ug.value, model.walk_ug_per_sqrt_s.value), (0.0, 0.0));
+        let none = Coefficient { value: 0.0, sigma: 0.0 };
+        assert_eq!((model.flicker_ug, model.walk_ug_per_sqrt_s), (none, none));
+        // Var N² = 1/Σ(1/(2·N²·0.01·√τ))² = 4·N⁴·10⁻⁴/Σ1/τ with Σ1/τ = 2 − 2⁻⁹, and σ(N) = σ(N²)/2N.
+        let expected = 4.0 * 0.01 / (2.0 - 2.0_f64.powi(-9)).sqrt();
+        assert!((model.white_ug_sqrt_s.sigma / expected - 1.0).abs() < 0.02, "{model:?} {expected}");
+    }
+
+    #[test]
+    fn four_points_are_enough_and_three_are_not() {
+        let plot = points(|tau| 16.0 / tau);
+        assert!(AllanModel::fit(&plot[..4]).is_some() && AllanModel::fit(&plot[..3]).is_none());
+    }
+
+    /// Squares of what the model misses, each over its uncertainty.
+    fn misfit(model: &AllanModel, points: &[AllanPoint]) -> f64 {
+        let off = |point: &AllanPoint| {
+            let square = point.deviation_ug.powi(2);
+            ((model.deviation_ug(point.tau_s).powi(2) - square) / (2.0 * square * point.relative_uncertainty)).powi(2)
+        };
+        points.iter().map(off).sum()
+    }
+
+    #[test]
+    fn no_model_nearby_fits_better() {
+        let point =
+            |(tau_s, deviation_ug, relative_uncertainty)| AllanPoint { tau_s, deviation_ug, relative_uncertainty };
+        let uncertain_start = [4.6, 2.5, 2.2, 1.8, 1.7, 1.65, 1.75, 2.0];
+        let uncertain_start: Vec<AllanPoint> = (0..)
+            .zip(uncertain_start)
+            .map(|(k, deviation_ug)| {
+                point((2.0_f64.powi(k), deviation_ug, if k == 0 { 0.3 } else { 0.01 * 1.4_f64.powi(k) }))
+            })
+            .collect();
+        let uneven = [
+            (1.0, 4.39, 0.01),
+            (2.0, 2.72, 0.009),
+            (4.0, 1.46, 0.088),
+            (8.0, 2.3, 0.021),
+            (16.0, 1.5, 0.075),
+            (32.0, 1.24, 0.102),
+        ];
+        for points in [uncertain_start, uneven.map(point).to_vec(), points(|tau| 16.0 / tau + 0.1 * tau)] {
+            let model = AllanModel::fit(&points).expect("enough");
+            let least = misfit(&model, &points);
+            for index in 0..3 {
+                for by in [-1e-3, 1e-3] {
+                    let mut near = model;
+                    let terms = [&mut near.white_ug_sqrt_s, &mut near.flicker_ug, &mut near.walk_ug_per_sqrt_s];
+                    let value = &mut terms.into_iter().nth(index).expect("three terms").value;
+                    *value = (*value * *value + by).max(0.0).sqrt();
+                    assert!(misfit(&near, &points) >= least - 1e-9, "{model:?}: {near:?}");
+                }
+            }
+        }
     }
 }

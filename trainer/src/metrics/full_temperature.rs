@@ -170,6 +170,8 @@ mod tests {
             let k1s = NODES_C.map(k1);
             let variation_ppm = standard_deviation(&k1s) / mean(&k1s) * 1e6;
             assert!((figures.scale_factor_variation_ppm - variation_ppm).abs() < 1e-3);
+            let variation_ug = standard_deviation(&NODES_C.map(k0)) * 1e6;
+            assert!((figures.bias_variation_ug - variation_ug).abs() < 1e-3);
             assert!((figures.scale_factor_temperature_sensitivity_ppm_per_k - 30.0).abs() < 0.05);
             assert!((figures.bias_temperature_sensitivity_ug_per_k - 150.0).abs() < 1e-4);
         }
@@ -218,6 +220,30 @@ mod tests {
         let figures = full_temperature(&noisy, &outputs(&noisy)).expect("four nodes");
         assert_eq!(figures.nodes.iter().map(|node| node.positions).collect::<Vec<_>>(), [8; 4]);
         assert!((figures.scale_factor_temperature_sensitivity_ppm_per_k - 30.0).abs() < 0.05);
+    }
+
+    #[test]
+    fn two_nodes_have_figures_and_one_has_none() {
+        let two = run(&[1.0, -1.0], &[-40.0, 85.0]);
+        let figures = full_temperature(&two, &outputs(&two)).expect("two nodes");
+        assert!((figures.bias_temperature_sensitivity_ug_per_k - 150.0).abs() < 1e-4);
+        let one = run(&[1.0, -1.0], &[25.0]);
+        assert_eq!(full_temperature(&one, &outputs(&one)), None);
+        // K1 of +1 and −1: their mean divides nothing.
+        let turned: Vec<f64> =
+            two.rows.iter().map(|row| row.reference_g * f64::from(row.sample.temperature_uc)).collect();
+        let signs: Vec<f64> =
+            two.rows.iter().zip(turned).map(|(row, of)| row.reference_g.abs() * of.signum()).collect();
+        assert_eq!(full_temperature(&two, &signs), None);
+    }
+
+    #[test]
+    fn half_of_what_the_run_spans_is_not_enough_for_a_node() {
+        let mut nodes = run(&[1.0, -1.0], &[-40.0, 85.0]);
+        nodes.rows.extend(run(&[1.0, 0.0], &[25.0]).rows);
+        assert_eq!(full_temperature(&nodes, &outputs(&nodes)).expect("two nodes").nodes.len(), 2);
+        nodes.rows.extend(run(&[1.0, -0.01], &[0.0]).rows);
+        assert_eq!(full_temperature(&nodes, &outputs(&nodes)).expect("three nodes").nodes.len(), 3);
     }
 
     #[test]

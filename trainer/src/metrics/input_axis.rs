@@ -71,7 +71,8 @@ impl InputAxis {
         let sigma_of = |of: &DVector<f64>, variance: f64| ((of.transpose() * inverse * of)[0] * variance).sqrt();
         let k2 = fitted.get(2).map(|curve| curve / (half * half) / k1);
         let sigma = variance.map(|variance| [sigma_of(&slope_at_zero, variance), sigma_of(&k0_of, variance)]);
-        (k1 != 0.0 && k0.is_finite()).then_some(Self { k1, k0, k2, sigma })
+        // No slope makes it a division by zero.
+        k0.is_finite().then_some(Self { k1, k0, k2, sigma })
     }
 }
 
@@ -115,7 +116,8 @@ mod tests {
         let uneven = [1.0, 0.5, 0.0, -0.5];
         let two_points = (output(1.0) - output(-0.5)) / 1.5;
         assert!((two_points / K1 - 1.0 - K2 * 0.5).abs() < 1e-9, "20 ppm off");
-        assert!(near(InputAxis::fit(&positions(uneven), true).expect("a fit").k1, K1));
+        let fit = InputAxis::fit(&positions(uneven), true).expect("a fit");
+        assert!(near(fit.k1, K1) && near(fit.k0, K0) && (fit.k2.expect("a curve") / K2 - 1.0).abs() < 1e-6);
         let line = InputAxis::fit(&positions([1.0, -0.5]), false).expect("a line");
         assert!(near(line.k1, two_points) && line.k2.is_none() && line.sigma.is_none());
     }
@@ -132,6 +134,25 @@ mod tests {
         assert!((k1_sigma / (24.0_f64 / 21.0 / 12.0).sqrt() - 1.0).abs() < 1e-6, "{k1_sigma}");
         // 1/24 for the mean, and as much again times two for telling it from the curve.
         assert!((k0_sigma * K1.abs() / (24.0_f64 / 21.0 * 3.0 / 24.0).sqrt() - 1.0).abs() < 1e-3, "{k0_sigma}");
+    }
+
+    #[test]
+    fn the_uncertainty_of_a_large_bias_is_that_of_a_quotient() {
+        // Two positions at 0 and two at 1, ±1 off in turn: σ² = 2; Var U₀ = σ²/2, Var K1 = σ², Cov = −σ²/2, so that
+        // Var K0 = σ²/K1²·(1/2 + K0² + K0), and K0 = 2.
+        let positions = [[0.0, 1.0], [0.0, -1.0], [1.0, 1.0], [1.0, -1.0]].map(|[a, off]| [a, 10.0 * (2.0 + a) + off]);
+        let fit = InputAxis::fit(&positions, false).expect("a line");
+        let [k1_sigma, k0_sigma] = fit.sigma.expect("four positions, two unknowns");
+        assert!(near(fit.k1, 10.0) && near(fit.k0, 2.0), "{fit:?}");
+        assert!(near(k1_sigma, 2.0_f64.sqrt()) && near(k0_sigma, 13.0_f64.sqrt() / 10.0), "{fit:?}");
+    }
+
+    #[test]
+    fn two_positions_have_no_curve_wherever_they_lie() {
+        for k in (0..100).map(f64::from) {
+            let two = [0.1 * k, 0.7 + 0.37 * k];
+            assert_eq!(InputAxis::fit(&positions(two), true), None, "{two:?}");
+        }
     }
 
     #[test]

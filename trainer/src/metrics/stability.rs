@@ -131,12 +131,17 @@ mod tests {
     use std::path::PathBuf;
 
     fn run(seconds: u64) -> Run {
-        let row = |second: u64| Row {
-            sample: Sample::from_difference(second * 1_000_000, 0, 0),
+        every(1, seconds)
+    }
+
+    /// So many rows, one every so many seconds.
+    fn every(interval_s: u64, count: u64) -> Run {
+        let row = |index: u64| Row {
+            sample: Sample::from_difference(index * interval_s * 1_000_000, 0, 0),
             reference_g: 0.0,
             reference_sigma_g: None,
         };
-        Run { name: "zero".into(), kind: "zero".into(), source: PathBuf::new(), rows: (0..seconds).map(row).collect() }
+        Run { name: "zero".into(), kind: "zero".into(), source: PathBuf::new(), rows: (0..count).map(row).collect() }
     }
 
     fn figure(stability: &Stability, id: &str) -> Option<f64> {
@@ -157,6 +162,26 @@ mod tests {
         assert!((of("Z3 (1σ, 10 s)") - drift(80.0)).abs() < 0.1, "means of ten cancel the alternation");
         assert!((of("Z4 (drift removed)") - 5.0).abs() < 0.01, "only the alternation is left");
         assert_eq!(figure(&stability, "Z6 (Allan minimum)"), None);
+    }
+
+    #[test]
+    fn an_hour_may_lack_two_samples_and_ten_seconds_need_two() {
+        let has = |interval_s: u64, count: u64, id: &str| {
+            let found = stability(&every(interval_s, count), &vec![0.0; count as usize], None);
+            figure(&found, id).is_some()
+        };
+        // From 20 to 80 minutes are 4800 s.
+        assert!(has(5, 959, "Z1") && !has(5, 958, "Z1") && has(1, 4799, "Z1") && !has(1, 4798, "Z1"));
+        assert!(has(5, 900, "Z3 (1σ, 10 s)") && !has(6, 900, "Z3 (1σ, 10 s)"));
+        // 20 values from 1200 s on.
+        assert!(has(1, 1220, "Z2 after 20 min") && !has(1, 1219, "Z2 after 20 min"));
+    }
+
+    #[test]
+    fn the_bottom_of_the_allan_plot_is_its_least_deviation() {
+        let point = |deviation_ug: f64| AllanPoint { tau_s: 1.0, deviation_ug, relative_uncertainty: 0.1 };
+        let found = stability(&run(30), &[0.0; 30], Some(&[4.0, 2.5, 3.0].map(point)));
+        assert_eq!(figure(&found, "Z6 (Allan minimum)"), Some(2.5));
     }
 
     #[test]
