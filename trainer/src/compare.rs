@@ -1,5 +1,8 @@
 //! Model against measurements.
 
+#[cfg(test)]
+mod tests;
+
 use crate::campaign::{Campaign, Run};
 use crate::metrics::allan::{AllanPoint, allan};
 use crate::metrics::full_temperature::{FullTemperature, full_temperature};

@@ -4,7 +4,7 @@ mod arrays;
 mod bounds;
 mod error;
 #[cfg(test)]
-mod example;
+pub(crate) mod example;
 mod fitted_effect;
 mod parts;
 mod read;

@@ -1,4 +1,4 @@
-//! A small model for the tests of this folder.
+//! A small model for tests.
 
 use super::{Model, ModelDomain, ModelEffect, ModelNetwork, ModelScaling, Provenance, Units};
 use crate::campaign::{ReadAs, ReadOptions};
