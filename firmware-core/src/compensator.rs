@@ -354,5 +354,11 @@ mod tests {
             assert_eq!(refused(spoil), Some(LoadError::Number));
         }
         assert!(matches!(refused(|b| b.proof ^= 1), Some(LoadError::Proof { .. })));
+        // The slope falls to zero towards the hot end: all along it, and the first place is told.
+        let Some(LoadError::Slope { delta_f_uhz, temperature_uc }) = refused(|b| b.scaling.line_g[3] = -0.05) else {
+            panic!("a calibration that can't measure");
+        };
+        assert!((-4 * HZ..-3 * HZ).contains(&delta_f_uhz), "{delta_f_uhz} µHz");
+        assert!((19_000_000..20_000_000).contains(&temperature_uc), "{temperature_uc} µ°C");
     }
 }

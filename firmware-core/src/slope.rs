@@ -108,6 +108,19 @@ mod tests {
     }
 
     #[test]
+    fn what_needs_a_closer_look_in_one_part_is_looked_at_in_all_others() {
+        // A dip of −1 at t = −0.7 where the line's slope is 1.35: only a closer look tells the two from −1 and 0.5.
+        let dip = [1.0, 20.0, 14.0, -1.0];
+        assert_eq!(fault_of([0.0, 1.0, 0.0, -0.5], dip), None);
+        // The same where the slope vanishes at the hot end, which comes last.
+        let [_, hot] = fault_of([0.0, 1.0, 0.0, -0.999], dip).expect("no slope at t = 1");
+        assert!(hot > 0.98, "{hot}");
+        // And a dip at the end of both: the last part of all.
+        let [x, t] = fault_of([0.0, 1.0, 0.0, -0.5], [20.0, 20.0, -40.0, -0.03]).expect("−0.1 in the corner");
+        assert!(x > 0.9 && t > 0.9, "{x}, {t}");
+    }
+
+    #[test]
     fn every_cell_of_a_level_is_visited() {
         let mut seen = [[false; 8]; 8];
         for path in 0..64 {
