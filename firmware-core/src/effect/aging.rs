@@ -101,6 +101,14 @@ mod tests {
     }
 
     #[test]
+    fn without_a_time_or_an_order_nothing_ages() {
+        for [tau_days, order] in [[0.0, 1.0], [30.0, 0.0]] {
+            assert_eq!(Bench::REST.bias_g(&Aging, &[1e-6, tau_days, order]), 0.0);
+            assert_eq!(Bench::age_days(400.0).bias_g(&Aging, &[1e-6, tau_days, order]), 0.0);
+        }
+    }
+
+    #[test]
     fn nothing_jumps_where_the_order_passes_1() {
         let aged = |order| Bench::age_days(400.0).bias_g(&Aging, &[1e-6, 30.0, order]);
         assert!((aged(1.0 + 1e-12) - aged(1.0)).abs() < 1e-15 && (aged(1.0 - 1e-12) - aged(1.0)).abs() < 1e-15);

@@ -104,6 +104,13 @@ mod tests {
     }
 
     #[test]
+    fn without_a_time_constant_the_rate_is_zero() {
+        // dT/dt + T.
+        let program = Program::new(&[0x03, 0x01, 0x10]).expect("it is sound");
+        assert_near(Expression.bias_g(&Bench::REST.moment(&program), &padded(&[2e-3, 0.0])), 2e-3 * 25.0);
+    }
+
+    #[test]
     fn where_it_has_no_value_it_adds_nothing() {
         // T/q at rest, and √(−T).
         for code in [[0x01, 0x02, 0x13].as_slice(), &[0x01, 0x20, 0x23]] {

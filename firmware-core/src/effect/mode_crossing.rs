@@ -97,6 +97,11 @@ mod tests {
     }
 
     #[test]
+    fn a_crossing_without_a_width_adds_nothing_at_its_middle_either() {
+        assert_eq!(Bench::temperature_c(30.0).bias_g(&ModeCrossing, &[300e-6, 0.0, 30.0, 17.0]), 0.0);
+    }
+
+    #[test]
     fn one_g_moves_the_crossing_by_the_shift() {
         let bench = Bench { level_g: 1.0, ..Bench::temperature_c(49.0) };
         assert_near(bench.bias_g(&ModeCrossing, &[300e-6, 2.0, 30.0, 17.0]), 300e-6);

@@ -75,4 +75,9 @@ mod tests {
             assert_near(disturbance.temperature_c, worked_c);
         }
     }
+
+    #[test]
+    fn without_a_time_constant_there_is_nothing_to_wait_for() {
+        assert_eq!(Bench::REST.disturbance(&SelfHeating, &[0.2, 0.0]).temperature_c, 0.0);
+    }
 }

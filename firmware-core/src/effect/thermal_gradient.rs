@@ -72,5 +72,6 @@ mod tests {
         let bench = Bench { departure: 1.0 / 12.0, ..Bench::REST };
         assert_near(bench.bias_g(&ThermalGradient, &coefficients), 100e-6);
         assert_eq!(ThermalGradient.memory(&padded(&coefficients)), Memory::Lag { tau_s: 5.0 });
+        assert_eq!(Bench::REST.bias_g(&ThermalGradient, &[6e-3, 0.0]), 0.0, "without a time constant there is no rate");
     }
 }

@@ -64,4 +64,9 @@ mod tests {
             assert_near(Bench::power_on_s(power_on_s).bias_g(&WarmUp, &[140e-6, 600.0]), worked_g);
         }
     }
+
+    #[test]
+    fn without_a_time_constant_it_is_warm_at_once() {
+        assert_eq!(Bench::REST.bias_g(&WarmUp, &[140e-6, 0.0]), 0.0);
+    }
 }
