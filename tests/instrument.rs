@@ -9,6 +9,7 @@ use firmware_sim::virtual_instrument::VirtualInstrument;
 use firmware_sim::virtual_line::VirtualLine;
 use firmware_sim::virtual_thermometer::VirtualThermometer;
 use proptest::prelude::*;
+use protocol::limits::{MAX_CHUNK, MAX_STORED};
 use protocol::{Decoder, Envelope, Reading, Refusal, Request, Response, Sample, Status, encode_frame, encode_request};
 use tests::{example, golden};
 
@@ -114,12 +115,13 @@ proptest! {
     ) {
         let ticks = cycles.saturating_add(spare);
         let mut counter = Counter::new(VirtualCounter::new(reference_hz, 1), reference_hz);
-        let counts = [cycles, ticks, 1, u32::MAX].map(u32::to_be_bytes);
+        // The second resonator is as fast as the reference.
+        let counts = [cycles, ticks, cycles, cycles].map(u32::to_be_bytes);
         counter.device_mut().store(2, &[0, 1]);
         counter.device_mut().store(4, counts.as_flattened());
         let Pair { f1_uhz, f2_uhz } = counter.frequencies().expect("sound counts");
         prop_assert_eq!(u128::from(f1_uhz), rounded_uhz(cycles, ticks, reference_hz));
-        prop_assert_eq!(u128::from(f2_uhz), rounded_uhz(1, u32::MAX, reference_hz));
+        prop_assert_eq!(u128::from(f2_uhz), u128::from(reference_hz) * 1_000_000);
     }
 }
 
@@ -188,6 +190,24 @@ fn a_request_from_the_future_is_refused_by_its_number() {
     let answer = answer_to(&mut line, &request).into_iter().find_map(|byte| decoder.push::<Response>(byte));
     let body = Response::Refused(Refusal::UnknownRequest);
     assert_eq!(answer, Some(Ok(Envelope { sequence: 300, body })));
+}
+
+#[test]
+fn a_calibration_may_fill_the_room_for_one_and_a_byte_more_changes_nothing() {
+    let mut link = Link::new(VirtualLine::new(example::SERIAL));
+    link.unlock().expect("a perfect line");
+    let mut write = |offset: usize, count: usize| {
+        let bytes = vec![0xAB; count].as_slice().try_into().expect("a piece");
+        link.exchange(Request::WriteBlob { offset: offset as u16, bytes }).expect("a perfect line")
+    };
+    for offset in (0..MAX_STORED).step_by(MAX_CHUNK) {
+        assert_eq!(write(offset, MAX_CHUNK.min(MAX_STORED - offset)), Response::Done, "{offset}");
+    }
+    assert_eq!(write(MAX_STORED - 10, 11), Response::Refused(Refusal::Unusable));
+    // All of it is still there: nonsense, but not too little of it.
+    let answer = link.exchange(Request::CommitBlob { length: MAX_STORED as u16 }).expect("a perfect line");
+    let Response::Refused(refusal) = answer else { panic!("nonsense was taken: {answer:?}") };
+    assert!(refusal != Refusal::Truncated && refusal != Refusal::Locked, "{refusal:?}");
 }
 
 #[test]

@@ -98,7 +98,7 @@ pub fn about(name: &str) -> Option<&'static About> {
 
 #[cfg(test)]
 mod tests {
-    use super::{ALL, Effect, find};
+    use super::{ALL, Effect, HIGHEST, find};
 
     #[test]
     fn what_is_said_of_an_effect_is_what_the_instrument_does() {
@@ -107,5 +107,20 @@ mod tests {
             assert_eq!(about.is_on_device(), computed.is_some(), "{}", about.name);
             assert_eq!(about.takes_program(), computed.is_some_and(Effect::takes_program), "{}", about.name);
         }
+    }
+
+    #[test]
+    fn what_locks_in_or_is_counted_with_a_clock_needs_a_frequency() {
+        let needing: [Option<&str>; 3] = {
+            let mut names = ALL.iter().filter(|about| about.needs_frequency()).map(|about| about.name);
+            core::array::from_fn(|_| names.next())
+        };
+        assert_eq!(needing, [Some("lock-in"), Some("reference-clock"), None]);
+    }
+
+    #[test]
+    fn the_highest_number_is_the_last_that_was_given() {
+        assert_eq!(HIGHEST as usize, ALL.len(), "numbers go from 1 up without a gap");
+        assert!(ALL.iter().all(|about| (1..=HIGHEST).contains(&about.id)));
     }
 }

@@ -312,6 +312,11 @@ mod tests {
     }
 
     #[test]
+    fn the_absolute_value_of_zero_is_zero_without_a_sign() {
+        assert_eq!(One::Absolute.of(0.0_f32).map(f32::to_bits), Some(0));
+    }
+
+    #[test]
     fn what_cannot_be_run_is_refused_with_its_reason() {
         let table: [(&[u8], ProgramError); 10] = [
             (&[], ProgramError::End),
