@@ -151,6 +151,13 @@ fn every_value_of_the_temperature_register_is_its_temperature_or_a_fault() {
 }
 
 #[test]
+fn what_has_measured_nothing_yet_is_stale_in_both_its_parts() {
+    let (sample, reading) = VirtualInstrument::new(example::SERIAL).measure().expect("a perfect line");
+    let faults = Status::RESONATOR_FAULT | Status::THERMOMETER_FAULT | Status::STALE;
+    assert_eq!((sample.faults, reading.status), (faults, faults | Status::UNCALIBRATED));
+}
+
+#[test]
 fn a_part_that_is_another_one_is_named() {
     let mut counter = VirtualCounter::new(1, 1);
     counter.fault = PartFault::OtherPart(0xBEEF);
