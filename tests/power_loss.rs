@@ -166,6 +166,17 @@ fn a_programmers_image_takes_the_place_of_everything_committed() {
 }
 
 #[test]
+fn the_mark_of_an_empty_slot_stands_where_the_storage_puts_its_own() {
+    let (at, mark) = storage::empty_slot();
+    let mut storage = Storage::new(VirtualFlash::new(), SLOT_BYTES);
+    storage.clear(Slot::Second).expect("a flash that takes everything");
+    let second = &storage.flash_mut().bytes()[SLOT_BYTES as usize..];
+    let written: Vec<usize> = (0..second.len()).filter(|&byte| second[byte] != 0xFF).collect();
+    let place = at as usize..at as usize + mark.len();
+    assert!(!written.is_empty() && written.iter().all(|byte| place.contains(byte)), "{written:?} and {place:?}");
+}
+
+#[test]
 fn the_instrument_itself_wakes_up_with_the_old_or_the_new_one_and_its_bits() {
     let (old, new) = (example::blob(), example::with_expression());
     let samples = example::samples(20);

@@ -330,6 +330,14 @@ mod tests {
     }
 
     #[test]
+    fn a_memory_has_settled_after_five_time_constants_and_says_so() {
+        let mut lagging = ready(&[(1, 4.0)]);
+        let settling: usize =
+            (0..60).filter(|&second| !lagging.compensate(&sample(second, 0, 0)).status.is_empty()).count();
+        assert_eq!(settling, 20, "a second each, from the first on");
+    }
+
+    #[test]
     fn impossible_calibrations_are_refused_by_what_is_wrong() {
         let refused = |spoil: fn(&mut Blob)| {
             let mut blob = blob(&[]);

@@ -208,3 +208,16 @@ fn reads<R: Real>(effect: &dyn Effect<R>, channel: usize, program: &Program) -> 
 fn seconds<R: Real>(us: u64) -> R {
     R::from_micro(i64::try_from(us).unwrap_or(i64::MAX))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn terms_are_empty_until_one_is_added() {
+        let mut terms = Terms::<f32>::new(u32::MAX);
+        assert!(terms.is_empty());
+        terms.push(1, 0, 0, [35.0].into_iter(), &[]).expect("a lag");
+        assert!(!terms.is_empty());
+    }
+}
