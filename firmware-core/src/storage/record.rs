@@ -140,3 +140,49 @@ fn words_of(bytes: [u8; 16]) -> [u32; 4] {
     let all = u128::from_le_bytes(bytes);
     [all as u32, (all >> 32) as u32, (all >> 64) as u32, (all >> 96) as u32]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A mark of three and four erases, and this record with five and six.
+    fn bytes(sequence: u32, length: usize) -> [u8; HEADING] {
+        let [low, high] = Record { sequence, length, checksum: 9 }.to_bytes([5, 6]);
+        let mut bytes = [0; HEADING];
+        let pieces = [Mark { erases: [3, 4] }.to_bytes(), low, high];
+        bytes.iter_mut().zip(pieces.as_flattened()).for_each(|(slot, byte)| *slot = *byte);
+        bytes
+    }
+
+    fn heading(sequence: u32, length: usize) -> Heading {
+        Heading::from_bytes(&bytes(sequence, length))
+    }
+
+    #[test]
+    fn a_bit_that_flips_anywhere_is_found() {
+        for bit in 0..8 * HEADING {
+            let mut spoilt = bytes(1, 10);
+            spoilt[bit / 8] ^= 1 << (bit % 8);
+            let of_record = Heading::from_bytes(&spoilt);
+            // Without a record, the mark is what counts.
+            spoilt[16..].fill(0xFF);
+            let of_mark = Heading::from_bytes(&spoilt);
+            let (record_holds, mark_holds) = (of_record.erases == [5, 6], of_mark.erases == [3, 4]);
+            assert_eq!((record_holds, mark_holds), (bit < 8 * 16, bit >= 8 * 16), "bit {bit}");
+            assert!(matches!(of_mark.state, State::Begun));
+        }
+    }
+
+    #[test]
+    fn a_record_counts_if_its_calibration_can_be_stored_and_its_number_can_be_given() {
+        let committed = heading(1, MAX_STORED);
+        let State::Committed(record) = &committed.state else { panic!("it counts") };
+        assert_eq!((record.sequence, record.length, record.checksum), (1, MAX_STORED, 9));
+        assert_eq!((committed.erases, committed.sequence(Slot::Second)), ([5, 6], Some(1)));
+        for (sequence, length) in [(1, MAX_STORED + 1), (0, 10), (0, MAX_STORED + 1)] {
+            let heading = heading(sequence, length);
+            assert!(matches!(heading.state, State::Begun), "{sequence}, {length}");
+            assert_eq!((heading.erases, heading.sequence(Slot::First)), ([3, 4], None), "the mark still holds");
+        }
+    }
+}
