@@ -193,6 +193,13 @@ fn a_table_may_be_as_wide_and_a_name_as_long_as_is_said() {
 }
 
 #[test]
+fn what_stands_in_quotes_separates_nothing() {
+    let read = campaign("\"a, b, c, d, e, f, g\";time_s;delta_f_hz;temperature_c;reference_g\nx;1;2;3;4\n");
+    assert_eq!(read.ignored_columns, ["a, b, c, d, e, f, g"]);
+    assert_eq!(read.runs[0].rows[0].reference_g, 4.0);
+}
+
+#[test]
 fn a_number_in_place_of_a_column_is_the_same_in_every_row() {
     let campaign = campaign_of("time_s,delta_f_hz,reference_g\n0,1,0\n1,1,0\n", &mapped(&[("temperature_c", "21.5")]));
     assert!(campaign.rows().all(|row| row.sample.temperature_uc == 21_500_000));

@@ -68,3 +68,18 @@ pub(super) fn line_at(text: &[u8], offset: usize) -> u64 {
     let lone_returns = before.windows(2).filter(|pair| pair[0] == b'\r' && pair[1] != b'\n').count();
     (feeds + lone_returns) as u64 + 1
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_ends_as_it_does_on_any_system() {
+        let text = b"a\rb\rc\r\nd\ne";
+        for (letter, line) in [(b'a', 1), (b'b', 2), (b'c', 3), (b'd', 4), (b'e', 5)] {
+            let offset = text.iter().position(|&byte| byte == letter).expect("it is there");
+            assert_eq!(line_at(text, offset), line, "{}", char::from(letter));
+        }
+        assert_eq!(line_at(text, 99), 5);
+    }
+}

@@ -75,10 +75,10 @@ fn the_noise_floor_is_that_of_neighbouring_samples() {
 #[test]
 fn what_is_flagged_is_counted_and_what_has_no_number_is_refused_in_its_row() {
     // The domain ends at 1 g and at 85 °C.
-    let rows = [(0.5, 0.0, 25.0), (1.2, 0.0, 25.0), (0.5, 0.0, 86.0), (0.9, 0.0, 84.0)];
+    let rows = [(0.5, 0.0, 25.0), (1.2, 0.0, 25.0), (0.5, 0.0, 86.0), (0.9, 0.0, 84.0), (0.0, 0.0, 0.0)];
     let mut campaign = campaign(vec![run("hot", "ramp", 1, rows)]);
     let comparison = compare(&line(), &campaign).expect("a comparison");
-    assert_eq!((comparison.runs[0].flagged, comparison.runs[0].samples), (2, 4));
+    assert_eq!((comparison.runs[0].flagged, comparison.runs[0].samples), (2, 5));
     campaign.runs[0].rows[2].sample.faults = Status::THERMOMETER_FAULT;
     let refused = compare(&line(), &campaign).expect_err("no number");
     assert!(matches!(&refused, ResidualError::NoNumber { run, row: 3, .. } if run == "hot"), "{refused}");

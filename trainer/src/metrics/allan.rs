@@ -100,6 +100,16 @@ mod tests {
     }
 
     #[test]
+    fn the_last_sample_counts_as_all_others_do() {
+        let mut outputs_g = vec![0.0; 64];
+        outputs_g[63] = 1e-6;
+        let points = allan(&run((0..64).map(f64::from)), &outputs_g).expect("64 samples");
+        // One of 63 differences is 1 µg; at two samples, of 61 differences of means the last is half a µg.
+        assert!(near(points[0].deviation_ug, (1.0_f64 / 126.0).sqrt()), "{points:?}");
+        assert!(near(points[1].deviation_ug, (0.25_f64 / 122.0).sqrt()), "{points:?}");
+    }
+
+    #[test]
     fn a_short_or_uneven_recording_has_no_plot() {
         let plot = |times_s: Vec<f64>| allan(&run(times_s.clone()), &vec![0.0; times_s.len()]);
         let even = |count: u32| (0..count).map(|k| f64::from(k) * 100.0).collect::<Vec<f64>>();
