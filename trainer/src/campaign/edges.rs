@@ -200,6 +200,16 @@ fn what_stands_in_quotes_separates_nothing() {
 }
 
 #[test]
+fn a_table_whose_lines_end_in_a_return_alone_is_refused_in_the_right_line() {
+    for end in ["\n", "\r\n", "\r"] {
+        let table = [HEAD, "0,1,2,3", "1,x,2,3", "2,1,2,3", ""].join(end);
+        let folder = Folder::with(&[("run.csv", table.as_bytes())]);
+        let refused = folder.read(&ReadOptions::default()).expect_err("no number");
+        assert!(refused.to_string().contains("run.csv:3, column 2"), "{end:?}: {refused}");
+    }
+}
+
+#[test]
 fn a_number_in_place_of_a_column_is_the_same_in_every_row() {
     let campaign = campaign_of("time_s,delta_f_hz,reference_g\n0,1,0\n1,1,0\n", &mapped(&[("temperature_c", "21.5")]));
     assert!(campaign.rows().all(|row| row.sample.temperature_uc == 21_500_000));

@@ -65,7 +65,9 @@ pub(super) fn unreadable(file: &Path, error: &std::io::Error) -> CampaignError {
 pub(super) fn line_at(text: &[u8], offset: usize) -> u64 {
     let before = text.get(..offset).unwrap_or(text);
     let feeds = before.iter().filter(|&&byte| byte == b'\n').count();
-    let lone_returns = before.windows(2).filter(|pair| pair[0] == b'\r' && pair[1] != b'\n').count();
+    // Of a carriage return, the byte behind it says whether the line ends there: for the last one that is at the offset.
+    let ends = |&(at, byte): &(usize, &u8)| *byte == b'\r' && text.get(at + 1) != Some(&b'\n');
+    let lone_returns = before.iter().enumerate().filter(ends).count();
     (feeds + lone_returns) as u64 + 1
 }
 
@@ -81,5 +83,6 @@ mod tests {
             assert_eq!(line_at(text, offset), line, "{}", char::from(letter));
         }
         assert_eq!(line_at(text, 99), 5);
+        assert_eq!((line_at(b"a\r\nb", 1), line_at(b"a\r\nb", 2)), (1, 1), "both bytes of the end belong to the line");
     }
 }
