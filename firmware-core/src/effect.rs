@@ -119,6 +119,15 @@ mod tests {
     }
 
     #[test]
+    fn every_coefficient_has_room_around_where_a_fit_starts() {
+        for about in ALL {
+            for Parameter { name, start, low, high, .. } in about.parameters {
+                assert!(low < high && (low..=high).contains(&start), "{}, {name}: {low}, {start}, {high}", about.name);
+            }
+        }
+    }
+
+    #[test]
     fn the_highest_number_is_the_last_that_was_given() {
         assert_eq!(HIGHEST as usize, ALL.len(), "numbers go from 1 up without a gap");
         assert!(ALL.iter().all(|about| (1..=HIGHEST).contains(&about.id)));
