@@ -177,6 +177,14 @@ fn the_mark_of_an_empty_slot_stands_where_the_storage_puts_its_own() {
 }
 
 #[test]
+fn a_slot_is_written_to_the_end_that_is_stated() {
+    let flash = after(&[1]);
+    let [first, second] = [0, SLOT_BYTES as usize].map(|from| &flash.bytes()[from..from + SLOT_BYTES as usize]);
+    let written = |slot: &[u8]| slot.iter().rposition(|&byte| byte != 0xFF).map_or(0, |last| last + 1);
+    assert_eq!(written(first).max(written(second)), storage::SLOT_USED as usize);
+}
+
+#[test]
 fn the_instrument_itself_wakes_up_with_the_old_or_the_new_one_and_its_bits() {
     let (old, new) = (example::blob(), example::with_expression());
     let samples = example::samples(20);
