@@ -98,7 +98,7 @@ pub fn about(name: &str) -> Option<&'static About> {
 
 #[cfg(test)]
 mod tests {
-    use super::{ALL, Effect, HIGHEST, find};
+    use super::{ALL, Effect, HIGHEST, Parameter, find};
 
     #[test]
     fn what_is_said_of_an_effect_is_what_the_instrument_does() {

@@ -3,6 +3,8 @@
 use super::limits::{MAX_COLUMNS, MAX_NAME, MAX_UPTIME_US};
 use super::tests::{Folder, campaign, campaign_of, mapped};
 use super::*;
+use protocol::Sample;
+use std::path::PathBuf;
 
 const HEAD: &str = "time_s,delta_f_hz,temperature_c,reference_g";
 

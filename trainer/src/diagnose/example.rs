@@ -84,6 +84,9 @@ pub struct Moment {
     pub level_g: f64,
 }
 
+/// What something does at each moment.
+pub type Course<'a> = &'a dyn Fn(&Moment) -> f64;
+
 /// What a campaign is made of.
 pub struct Recipe<'a> {
     /// Runs.
@@ -97,7 +100,7 @@ pub struct Recipe<'a> {
     /// Whether the sum of the frequencies is measured; its noise, mHz, is as large as that of the difference in µg.
     pub sum: bool,
     /// An auxiliary channel and its course.
-    pub channel: Option<(&'static str, &'a dyn Fn(&Moment) -> f64)>,
+    pub channel: Option<(&'static str, Course<'a>)>,
     /// Days from the start of one run to that of the next, of a sensor whose age is known.
     pub days_apart: Option<u32>,
 }
@@ -152,7 +155,7 @@ fn temperature_c(run: usize, time_s: f64) -> f64 {
         let ((from_s, from), (to_s, to)) = (pair[0], pair[1]);
         from + (to - from) * (time_s - from_s) / (to_s - from_s)
     });
-    let share = if run % 2 == 0 { way } else { 1.0 - way };
+    let share = if run.is_multiple_of(2) { way } else { 1.0 - way };
     RANGE_C.0 + share * (RANGE_C.1 - RANGE_C.0)
 }
 

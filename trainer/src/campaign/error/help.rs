@@ -183,7 +183,7 @@ fn column(facts: &Facts) -> (&str, &str) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::error::Place;
+    use super::super::Place;
     use super::*;
 
     #[test]

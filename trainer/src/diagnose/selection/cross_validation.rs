@@ -95,7 +95,7 @@ fn folds(problem: &Problem) -> Vec<(usize, Range<usize>)> {
 
 /// What is left of each initial state in these cells of a run.
 fn begun(initial: &InitialStates, run: usize, rows: Range<usize>) -> Vec<Vec<f64>> {
-    let shares: &[Shares] = &initial.of_run(run)[..];
+    let shares: &[Shares] = initial.of_run(run);
     let of = |&(place, way): &(usize, usize)| rows.clone().map(|row| shares[row][place][way]).collect();
     initial.present().iter().map(of).collect()
 }
