@@ -186,3 +186,14 @@ impl<F: NorFlash> Storage<F> {
 pub fn empty_slot() -> (u32, [u8; 16]) {
     (HEADING_AT, Mark { erases: [0, 0] }.to_bytes())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_used_of_a_slot_ends_with_a_mark_and_a_record_of_two_pieces() {
+        let (at, mark) = empty_slot();
+        assert_eq!(SLOT_USED as usize, at as usize + 3 * mark.len());
+    }
+}
