@@ -1,7 +1,7 @@
 //! Claim: every effect keeps the same contract, and gives the value that its physics says.
 //!
-//! One loop over the registry, one table with a row per effect. A new effect needs its row here and
-//! nothing else.
+//! One loop over the registry, one table with a row per effect. A new effect needs its row here and a line in the golden
+//! file; `docs/adding-an-effect.md` has the whole list.
 
 use firmware_core::effect::{self, About, Parameter, Role};
 use firmware_core::{Compensator, LoadError, Observation, Real, Terms};

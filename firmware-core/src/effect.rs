@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn what_locks_in_or_is_counted_with_a_clock_needs_a_frequency() {
         let needing: [Option<&str>; 3] = {
-            let mut names = ALL.iter().filter(|about| about.needs_frequency()).map(|about| about.name);
+            let mut names = ALL.iter().filter(|about| about.needs_frequency).map(|about| about.name);
             core::array::from_fn(|_| names.next())
         };
         assert_eq!(needing, [Some("lock-in"), Some("reference-clock"), None]);

@@ -16,7 +16,7 @@ pub fn check(name: &str, bytes: &[u8]) {
     if let Some(at) = (0..bytes.len().max(recorded.len())).find(|at| bytes.get(*at) != recorded.get(*at)) {
         panic!(
             "{name} differs from byte {at} on: recorded {:02x?}, now {:02x?}. Devices in the field hold the recorded \
-             bytes: raise the version instead, or set TEMPCO_RECORD_GOLDEN=1 before the first release",
+             bytes: raise the version instead. What was only added, or changed before the first release: TEMPCO_RECORD_GOLDEN=1",
             recorded.get(at),
             bytes.get(at)
         );

@@ -111,7 +111,7 @@ pub(crate) fn choose(choice: &EffectChoice, campaign: &Campaign, runs: &[&Run]) 
     if !about.is_on_device() {
         return Err(EffectError::NotOnDevice(choice.name.clone()));
     }
-    if about.needs_frequency() && !campaign.quantity.is_frequency() {
+    if about.needs_frequency && !campaign.quantity.is_frequency() {
         let unit = campaign.quantity.signal_unit.clone();
         return Err(EffectError::NeedsFrequency { effect: choice.name.clone(), unit });
     }

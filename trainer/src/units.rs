@@ -1,6 +1,6 @@
 //! Units of acceleration, and how an effect's coefficients follow the unit of the reference.
 
-use firmware_core::effect::{About, Role};
+use firmware_core::effect::About;
 
 /// References that span less than this share of what the reading does are one and the same.
 pub(crate) const STILL: f64 = 0.01;
@@ -28,15 +28,8 @@ pub(crate) fn units_per_g(unit: &str) -> Option<f64> {
 /// With which power of a factor on the reference a coefficient of this name is multiplied, so that the effect does the
 /// same: what adds to the reading follows the reference, what is multiplied with powers of the level follows the rest.
 pub(crate) fn exponent(about: &About, name: &str) -> i32 {
-    let Some(parameter) = about.parameters.iter().find(|parameter| parameter.name == name) else { return 0 };
-    match (about.name, name) {
-        ("second-order", _) | ("mode-crossing", "shift_c_per_g") => -1,
-        ("third-order", _) => -2,
-        ("cross-axis", "kip_g_per_g2") => 0,
-        ("scale-factor-aging" | "g-hysteresis" | "self-heating" | "reference-clock", _) => 0,
-        _ if parameter.role == Role::Amplitude => 1,
-        _ => 0,
-    }
+    let parameter = about.parameters.iter().find(|parameter| parameter.name == name);
+    parameter.map_or(0, |parameter| parameter.follows_reference)
 }
 
 #[cfg(test)]
@@ -44,7 +37,7 @@ mod tests {
     use super::*;
     use crate::campaign::Row;
     use crate::fit::effects::{Chosen, Coefficients, contributions};
-    use firmware_core::effect::{ALL, Parameter};
+    use firmware_core::effect::{ALL, Parameter, Role};
     use protocol::Sample;
 
     /// A course in which every effect does something; the reference in units of 1/`factor`.

@@ -17,6 +17,8 @@ pub struct About {
     pub parameters: &'static [Parameter],
     /// The auxiliary channel that it follows, if any.
     pub channel: Option<&'static str>,
+    /// Whether only a signal that is a frequency can have it: what locks in, or is counted with a clock.
+    pub needs_frequency: bool,
     /// What it does to the sum of the frequencies.
     pub sum_response: SumResponse,
     /// What a campaign must contain to show it.
@@ -35,12 +37,6 @@ impl About {
     #[must_use]
     pub fn takes_program(&self) -> bool {
         self.name == "expression"
-    }
-
-    /// Whether only a signal that is a frequency can have it: what locks in, or is counted with a clock.
-    #[must_use]
-    pub fn needs_frequency(&self) -> bool {
-        matches!(self.name, "lock-in" | "reference-clock")
     }
 }
 
@@ -63,6 +59,9 @@ pub struct Parameter {
     pub typical: f64,
     /// At which of the bounds the formula has a limit that makes sense: a fit that ends there is none that was stopped.
     pub sound_limit: SoundLimit,
+    /// With which power of the reference's unit it goes: 1 for what adds to the reading, −1 for what is multiplied with
+    /// the square of a level, 0 for what has nothing to do with it.
+    pub follows_reference: i32,
 }
 
 /// Bounds at which a formula has a limit that makes sense: a rate not smoothed, a drift that does not end.

@@ -29,6 +29,7 @@ pub const ABOUT: About = About {
             high: 0.01,
             typical: 2e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "tau_days",
@@ -39,6 +40,7 @@ pub const ABOUT: About = About {
             high: 1e5,
             typical: 30.0,
             sound_limit: SoundLimit::High,
+            follows_reference: 0,
         },
         Parameter {
             name: "order",
@@ -49,9 +51,11 @@ pub const ABOUT: About = About {
             high: 100.0,
             typical: 1.0,
             sound_limit: SoundLimit::Both,
+            follows_reference: 0,
         },
     ],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "an age_days column, and runs over months at logarithmic intervals",
 };

@@ -28,6 +28,7 @@ pub const ABOUT: About = About {
             high: 0.1,
             typical: 100e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "kip_g_per_g2",
@@ -38,9 +39,11 @@ pub const ABOUT: About = About {
             high: 0.01,
             typical: 20e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
     ],
     channel: Some("cross_g"),
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "a cross_g column, and a tumble of eight or more positions in random order, best in two mountings",
 };

@@ -28,6 +28,7 @@ pub const ABOUT: About = About {
             high: 1e9,
             typical: 0.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "tau_s",
@@ -38,9 +39,11 @@ pub const ABOUT: About = About {
             high: 36_000.0,
             typical: 30.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
     ],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "whatever the expression reads must vary, and not along with acceleration or temperature alone",
 };

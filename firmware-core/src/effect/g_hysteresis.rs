@@ -27,6 +27,7 @@ pub const ABOUT: About = About {
             high: 0.01,
             typical: 20e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
         Parameter {
             name: "tau_s",
@@ -37,9 +38,11 @@ pub const ABOUT: About = About {
             high: 10_000.0,
             typical: 200.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
     ],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::GRADIENT,
     needs: "positions in random order, with minutes of rest after large changes",
 };

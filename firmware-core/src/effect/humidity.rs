@@ -28,6 +28,7 @@ pub const ABOUT: About = About {
             high: 0.01,
             typical: 5e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "tau_h",
@@ -38,6 +39,7 @@ pub const ABOUT: About = About {
             high: 1000.0,
             typical: 20.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
         Parameter {
             name: "nominal_pct",
@@ -48,9 +50,11 @@ pub const ABOUT: About = About {
             high: 100.0,
             typical: 40.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
     ],
     channel: Some("humidity_pct"),
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "a humidity_pct column with steps of tens of per cent, each held for days",
 };

@@ -28,8 +28,10 @@ pub const ABOUT: About = About {
         high: 50.0,
         typical: 2.0,
         sound_limit: SoundLimit::Neither,
+        follows_reference: 0,
     }],
     channel: None,
+    needs_frequency: true,
     sum_response: SumResponse::GRADIENT,
     needs: "many levels of acceleration on both sides of equal frequencies, as in a tumble of 24 positions",
 };

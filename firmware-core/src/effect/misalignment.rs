@@ -30,6 +30,7 @@ pub const ABOUT: About = About {
             high: 0.1,
             typical: 100e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "angle_rad_per_c",
@@ -40,9 +41,11 @@ pub const ABOUT: About = About {
             high: 0.001,
             typical: 1e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
     ],
     channel: Some("cross_g"),
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "a cross_g column, and a tumble in two mountings turned by 180° about the input axis",
 };

@@ -28,6 +28,7 @@ pub const ABOUT: About = About {
             high: 0.1,
             typical: 300e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "width_c",
@@ -38,6 +39,7 @@ pub const ABOUT: About = About {
             high: 20.0,
             typical: 2.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
         Parameter {
             name: "crossing_c",
@@ -48,6 +50,7 @@ pub const ABOUT: About = About {
             high: 130.0,
             typical: 25.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
         Parameter {
             name: "shift_c_per_g",
@@ -58,9 +61,11 @@ pub const ABOUT: About = About {
             high: 150.0,
             typical: 0.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: -1,
         },
     ],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "slow temperature ramps with dense temperatures, repeated at two levels of acceleration",
 };

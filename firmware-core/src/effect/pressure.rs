@@ -23,6 +23,7 @@ pub const ABOUT: About = About {
             high: 0.001,
             typical: 0.3e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "nominal_pa",
@@ -33,9 +34,11 @@ pub const ABOUT: About = About {
             high: 1e7,
             typical: 101_325.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
     ],
     channel: Some("pressure_pa"),
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "a pressure_pa column that varies by some tens of hPa, as in a bell jar",
 };

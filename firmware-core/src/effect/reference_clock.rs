@@ -27,8 +27,10 @@ pub const ABOUT: About = About {
         high: 100.0,
         typical: 3e-3,
         sound_limit: SoundLimit::Neither,
+        follows_reference: 0,
     }],
     channel: None,
+    needs_frequency: true,
     sum_response: SumResponse::Predicted,
     needs: "an age_days column, runs over months at more than one level of acceleration, and the sum of the frequencies",
 };

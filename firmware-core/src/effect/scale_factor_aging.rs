@@ -25,8 +25,10 @@ pub const ABOUT: About = About {
         high: 1000.0,
         typical: 1.0,
         sound_limit: SoundLimit::Neither,
+        follows_reference: 0,
     }],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "an age_days column, and runs over months at more than one level of acceleration",
 };

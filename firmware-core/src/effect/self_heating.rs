@@ -28,6 +28,7 @@ pub const ABOUT: About = About {
             high: 20.0,
             typical: 0.15,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
         Parameter {
             name: "tau_s",
@@ -38,9 +39,11 @@ pub const ABOUT: About = About {
             high: 36_000.0,
             typical: 900.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
     ],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::Predicted,
     needs: "recordings that begin at power-on from cold, at temperatures where the bias has different slopes",
 };

@@ -29,6 +29,7 @@ pub const ABOUT: About = About {
             high: 0.01,
             typical: 5e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "tau_s",
@@ -39,9 +40,11 @@ pub const ABOUT: About = About {
             high: 1e6,
             typical: 6000.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
     ],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "hours of soak after large temperature steps, best at two temperatures",
 };

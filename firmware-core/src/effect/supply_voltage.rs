@@ -23,6 +23,7 @@ pub const ABOUT: About = About {
             high: 0.1,
             typical: 1e-3,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "nominal_v",
@@ -33,9 +34,11 @@ pub const ABOUT: About = About {
             high: 50.0,
             typical: 5.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
     ],
     channel: Some("supply_v"),
+    needs_frequency: false,
     sum_response: SumResponse::ELECTRONICS,
     needs: "a supply_v column that varies by a few per cent",
 };

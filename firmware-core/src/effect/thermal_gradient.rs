@@ -25,6 +25,7 @@ pub const ABOUT: About = About {
             high: 0.1,
             typical: 6e-3,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "tau_s",
@@ -35,9 +36,11 @@ pub const ABOUT: About = About {
             high: 300.0,
             typical: 5.0,
             sound_limit: SoundLimit::Low,
+            follows_reference: 0,
         },
     ],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::GRADIENT,
     needs: "temperature ramps at two rates, where the bias has different slopes over temperature",
 };

@@ -25,6 +25,7 @@ pub const ABOUT: About = About {
             high: 0.01,
             typical: 10e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "half_width_c",
@@ -35,9 +36,11 @@ pub const ABOUT: About = About {
             high: 60.0,
             typical: 10.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
     ],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "the same temperatures reached from below and from above, each soaked",
 };

@@ -24,8 +24,10 @@ pub const ABOUT: About = About {
         high: 3600.0,
         typical: 35.0,
         sound_limit: SoundLimit::Neither,
+        follows_reference: 0,
     }],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::Predicted,
     needs: "temperature ramps, best at two rates and in both directions",
 };

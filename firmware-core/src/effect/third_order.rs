@@ -26,8 +26,10 @@ pub const ABOUT: About = About {
         high: 0.01,
         typical: 0.5e-6,
         sound_limit: SoundLimit::Neither,
+        follows_reference: -2,
     }],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "five or more levels of acceleration, as in a tumble, best beyond 1 g",
 };

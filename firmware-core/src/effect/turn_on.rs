@@ -20,6 +20,7 @@ pub const ABOUT: About = About {
     source: "IEEE Std 1293, bias repeatability; Safran MS1000 data sheet",
     parameters: &[],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "ten or more power-ons at one temperature in one mounting",
 };

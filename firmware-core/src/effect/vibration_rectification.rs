@@ -22,8 +22,10 @@ pub const ABOUT: About = About {
         high: 0.1,
         typical: 20e-6,
         sound_limit: SoundLimit::Neither,
+        follows_reference: 1,
     }],
     channel: Some("vibration_g2"),
+    needs_frequency: false,
     sum_response: SumResponse::STRESS,
     needs: "a vibration_g2 column (mean square) and vibration of several strengths",
 };

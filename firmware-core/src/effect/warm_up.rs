@@ -23,6 +23,7 @@ pub const ABOUT: About = About {
             high: 0.1,
             typical: 140e-6,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 1,
         },
         Parameter {
             name: "tau_s",
@@ -33,9 +34,11 @@ pub const ABOUT: About = About {
             high: 36_000.0,
             typical: 600.0,
             sound_limit: SoundLimit::Neither,
+            follows_reference: 0,
         },
     ],
     channel: None,
+    needs_frequency: false,
     sum_response: SumResponse::ELECTRONICS,
     needs: "recordings that begin at power-on",
 };

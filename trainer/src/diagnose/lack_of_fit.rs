@@ -2,17 +2,19 @@
 //! not what.
 //!
 //! ```text
-//! the day          the same course every 24 h or tide, by the calendar
-//! one run          its own course over temperature, unlike all other runs
-//! an extremum      what the hottest or coldest moment so far left behind for good
-//! rectification    a kink at 0 g, where a smooth instrument has none
-//! a quantity       a smooth function of the level, of time, of a channel
-//! a period         whatever its phase (`periodogram`)
-//! poses            a scatter from position to position that no table explains
+//! structure      what it is                                               made by            overrules an effect
+//! the day        the same course every 24 h or tide, by the calendar      rivals_of_effects  yes
+//! one run        its own course over temperature, unlike all other runs   rivals_of_effects  yes
+//! an extremum    what the hottest or coldest moment so far left for good  running_extrema    yes
+//! a period       whatever its phase                                       periodogram        yes
+//! rectification  a kink at 0 g, where a smooth instrument has none        rectified          no
+//! a quantity     a smooth function of the level, of time, of a channel    dependence         no
+//! poses          a scatter between positions that no table explains       Scene::poses       no
 //! ```
 //!
 //! Each is judged as an effect is: fitted, the noise estimated again with it, and its ΔBIC weighed. It must also be
-//! of a size that matters, because no formula is exact.
+//! of a size that matters, because no formula is exact. What overrules an effect is compared with it before the effect is
+//! believed (`largest_alternative`, asked by `verdict`); those are few, as only the most striking are judged in full.
 
 mod dependence;
 mod periodogram;
@@ -35,7 +37,7 @@ use periodogram::periodic;
 use rayon::prelude::*;
 use std::borrow::Cow;
 pub(super) use structure::LackOfFit;
-use structure::{Alternative, Course, levels, rectified, running_extrema, structures};
+use structure::{Alternative, Course, levels, rectified, rivals_of_effects, running_extrema};
 
 /// Everything that gives away something missing beside these effects, the surest first.
 pub(super) fn lack_of_fit(
@@ -47,7 +49,7 @@ pub(super) fn lack_of_fit(
     let (residual, nuisance) = (problem.forward.residuals(known).delta, constrained(problem, known, noises).delta);
     let scene = Scene { problem, initial: &noises.initial, noise: noises.delta, residual: &residual };
     let Some(map) = scene.free(&nuisance) else { return Vec::new() };
-    let mut alternatives = structures(problem);
+    let mut alternatives = rivals_of_effects(problem);
     let other = followed(problem, channels).into_iter().filter(|(name, _)| name != TEMPERATURE);
     alternatives.extend(other.map(|(name, columns)| Alternative {
         depends_on: vec![name],
@@ -71,7 +73,7 @@ pub(super) fn largest_alternative(problem: &Problem, known: &EffectSet, noises: 
     let (residual, nuisance) = (problem.forward.residuals(known).delta, constrained(problem, known, noises).delta);
     let scene = Scene { problem, initial: &noises.initial, noise: noises.delta, residual: &residual };
     let Some(map) = scene.free(&nuisance) else { return f64::NEG_INFINITY };
-    let mut structures = structures(problem);
+    let mut structures = rivals_of_effects(problem);
     structures.extend(running_extrema(problem));
     let all = scene.followed(&structures, &map).into_iter().chain(periodic(problem, known, noises));
     all.filter(|one| matters(problem, one)).map(|one| one.delta_bic).fold(f64::NEG_INFINITY, f64::max)
@@ -189,9 +191,9 @@ impl Scene<'_> {
 
     /// How far training may have been bent by what is new at every start and at every position, µg.
     fn bent_ug(&self) -> f64 {
-        let squares = [Component::Run, Component::Mounting, Component::Position, Component::Turn]
-            .map(|component| self.noise[component].powi(2));
-        BENT * (squares.iter().sum::<f64>() / self.residual.len() as f64).sqrt()
+        let parts = Component::ALL.into_iter().filter(|component| component.is_of_the_rig());
+        let squares = parts.map(|component| self.noise[component].powi(2));
+        BENT * (squares.sum::<f64>() / self.residual.len() as f64).sqrt()
     }
 
     /// Whether the noise is less likely without a scatter that every position has of its own.

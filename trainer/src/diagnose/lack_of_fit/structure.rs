@@ -64,7 +64,7 @@ const DAYS_S: [f64; 2] = [86_400.0, 44_714.0];
 
 /// Structures whose ΔBIC compares with that of effects: a kink's, weighed against a smooth instrument only, says
 /// too how far training was bent by the very effect that is missing.
-pub fn structures(problem: &Problem) -> Vec<Alternative> {
+pub fn rivals_of_effects(problem: &Problem) -> Vec<Alternative> {
     let mut all = days(problem);
     all.extend(odd_runs(problem));
     all

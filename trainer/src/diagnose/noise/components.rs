@@ -10,9 +10,9 @@ use std::ops::{Index, IndexMut};
 pub enum Component {
     /// From run to run: turn-on, µg.
     Run,
-    /// From run to run, mounting, µg per g across the input axis.
+    /// From run to run, µg per g across the input axis: each run is taken for a mounting of its own.
     Mounting,
-    /// From position to position, table, µg per g across the input axis.
+    /// From position to position, µg per g across the input axis: a table's errors.
     Position,
     /// From soaked node to soaked node, µg.
     Node,
@@ -64,6 +64,31 @@ impl Component {
             Self::Pose => 7,
             Self::Turn => 8,
             Self::Initial(effect) => 9 + effect,
+        }
+    }
+
+    /// Whether it wanders within a run: what is periodic may be taken for it.
+    pub const fn wanders(self) -> bool {
+        match self {
+            Self::Flicker | Self::Wander | Self::Walk | Self::Turn => true,
+            Self::Run | Self::Mounting | Self::Position | Self::Node | Self::Pose | Self::Initial(_) => false,
+        }
+    }
+
+    /// Whether it comes with a start, a mounting or a position: a map trained on few runs follows its mean.
+    pub const fn is_of_the_rig(self) -> bool {
+        match self {
+            Self::Run | Self::Mounting | Self::Position | Self::Turn => true,
+            Self::Node | Self::Flicker | Self::Wander | Self::Walk | Self::Pose | Self::Initial(_) => false,
+        }
+    }
+
+    /// Whether it scatters within a run about a mean, so that no model can remove it there: a run's own offset is left out
+    /// of what is predictable, and a walk has no mean.
+    pub const fn scatters_within_runs(self) -> bool {
+        match self {
+            Self::Position | Self::Node | Self::Flicker | Self::Wander | Self::Pose | Self::Turn => true,
+            Self::Run | Self::Mounting | Self::Walk | Self::Initial(_) => false,
         }
     }
 
@@ -132,7 +157,7 @@ impl NoiseModel {
     pub fn calm(&self) -> Self {
         let mut calm = *self;
         let small = self.small();
-        for component in [Component::Flicker, Component::Wander, Component::Walk, Component::Turn] {
+        for component in Component::ALL.into_iter().filter(|component| component.wanders()) {
             calm[component] = small[component];
         }
         calm

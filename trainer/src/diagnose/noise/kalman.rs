@@ -162,7 +162,7 @@ pub fn deviance(noise: &NoiseModel, states: &[State], runs: &[(Observed, &[f64])
 }
 
 /// Most states: ten whatever is known, and the initial states of what is.
-const MOST_STATES: usize = 10 + PLACES * FORGOTTEN.len();
+pub const MOST_STATES: usize = 10 + PLACES * FORGOTTEN.len();
 
 /// So many variances are multiplied before their logarithm is taken.
 const FACTORS: usize = 8;

@@ -58,28 +58,54 @@ fn observed<'a>(cells: &'a Cells, initial: &'a InitialStates) -> Vec<Observed<'a
 
 /// The states that make a difference.
 fn states(noise: &NoiseModel, initial: &InitialStates) -> Vec<State> {
-    let all = [
-        (Kind::Constant, Component::Run),
-        (Kind::Mounting, Component::Mounting),
-        (Kind::Position, Component::Position),
-        (Kind::Node, Component::Node),
-        (Kind::Fading(0), Component::Flicker),
-        (Kind::Fading(1), Component::Flicker),
-        (Kind::Fading(SLOWEST), Component::Wander),
-        (Kind::Walk, Component::Walk),
-        (Kind::Pose, Component::Pose),
-        (Kind::Turning, Component::Turn),
-    ];
-    let began = initial.present().iter().map(|&(place, way)| (Kind::Initial(place, way), Component::Initial(place)));
-    let sized = |(kind, component)| match kind {
-        Kind::Walk => (kind, noise[component] * 60.0),
-        _ => (kind, noise[component]),
-    };
-    let matters = |&(_, sigma): &(Kind, f64)| sigma > noise.sample * LEAST_STATE;
-    let state = |(kind, sigma): (Kind, f64)| State { kind, variance: sigma * sigma };
-    let walk = |state: State| match state.kind {
-        Kind::Walk => State { variance: state.variance / 3600.0, ..state },
-        _ => state,
-    };
-    all.into_iter().chain(began).map(sized).filter(matters).map(state).map(walk).collect()
+    let all = Component::ALL.into_iter().flat_map(|component| {
+        let states = kinds(component, initial).into_iter();
+        states.map(move |kind| (kind, noise[component], component.unit(1.0)))
+    });
+    let matters = |&(_, size, unit): &(Kind, f64, f64)| size / unit > noise.sample * LEAST_STATE;
+    all.filter(matters).map(|(kind, size, _)| State { kind, variance: size * size }).collect()
+}
+
+/// The states that a part of the noise consists of: all have its size.
+fn kinds(component: Component, initial: &InitialStates) -> Vec<Kind> {
+    match component {
+        Component::Run => vec![Kind::Constant],
+        Component::Mounting => vec![Kind::Mounting],
+        Component::Position => vec![Kind::Position],
+        Component::Node => vec![Kind::Node],
+        // Two octaves make it as good as 1/f.
+        Component::Flicker => vec![Kind::Fading(0), Kind::Fading(1)],
+        Component::Wander => vec![Kind::Fading(SLOWEST)],
+        Component::Walk => vec![Kind::Walk],
+        Component::Pose => vec![Kind::Pose],
+        Component::Turn => vec![Kind::Turning],
+        Component::Initial(effect) => {
+            let own = initial.present().iter().filter(|(place, _)| *place == effect);
+            own.map(|&(place, way)| Kind::Initial(place, way)).collect()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::initial_state::PLACES;
+    use super::*;
+    use crate::diagnose::example::{Recipe, effect, problem};
+    use crate::diagnose::forward::EffectSet;
+
+    #[test]
+    fn all_parts_together_are_as_many_states_as_the_largest_filter_has_room_for() {
+        let campaign = Recipe { runs: 2, ..Recipe::default() }.campaign();
+        let problem = problem(&campaign);
+        // A play may have begun in two ways.
+        let play = effect("thermal-hysteresis", &campaign);
+        let coefficients: Vec<f64> = play.about.parameters.iter().map(|about| about.typical).collect();
+        let plays = (0..PLACES).fold(EffectSet::NONE, |set, _| set.with(&play, &coefficients));
+        let initial = InitialStates::of(problem.cells(), &plays);
+        assert_eq!(initial.present().len(), 2 * PLACES, "each play in each way");
+        assert_eq!(states(&NoiseModel::even(5.0, 0.0), &initial).len(), kalman::MOST_STATES);
+        let mut quiet = NoiseModel::even(5.0, 0.0);
+        Component::ALL.into_iter().for_each(|component| quiet[component] = 0.0);
+        assert!(states(&quiet, &initial).is_empty());
+    }
 }

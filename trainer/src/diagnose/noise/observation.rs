@@ -109,7 +109,7 @@ impl<'a, const L: usize> Lanes<'a, L> {
         match kind {
             Kind::Mounting | Kind::Position | Kind::Turning => self.cross_g,
             Kind::Initial(place, way) => self.initial.map(|shares| shares[place][way]),
-            _ => self.present,
+            Kind::Constant | Kind::Pose | Kind::Node | Kind::Fading(_) | Kind::Walk => self.present,
         }
     }
 
@@ -120,7 +120,7 @@ impl<'a, const L: usize> Lanes<'a, L> {
             Kind::Node => self.same_node,
             Kind::Fading(which) => self.correlation[which],
             Kind::Turning => self.correlation[SLOWEST],
-            _ => [1.0; L],
+            Kind::Constant | Kind::Mounting | Kind::Walk | Kind::Initial(..) => [1.0; L],
         }
     }
 }

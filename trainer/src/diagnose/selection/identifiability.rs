@@ -67,7 +67,7 @@ pub fn unobservable(campaign: &Campaign, screening: &Screening, known: &EffectSe
         });
     let hidden =
         screening.hidden.iter().map(|(name, why)| Unobservable { effect: (*name).to_owned(), why: why.clone() });
-    let unfit = effect::ALL.iter().filter(|about| !campaign.quantity.is_frequency() && about.needs_frequency());
+    let unfit = effect::ALL.iter().filter(|about| !campaign.quantity.is_frequency() && about.needs_frequency);
     let unfit = unfit.map(|about| Unobservable {
         effect: about.name.to_owned(),
         why: format!("the signal is measured in {}: it is no frequency", campaign.quantity.signal_unit),

@@ -28,10 +28,9 @@ fn wander_ug(noise: &NoiseModel) -> f64 {
 
 /// Share of the square above what no model can remove; what is new in every run is not in it.
 pub fn explainable(before_ug: f64, after_ug: f64, noise: &NoiseModel) -> f64 {
-    let parts =
-        [Component::Position, Component::Node, Component::Flicker, Component::Wander, Component::Pose, Component::Turn];
+    let parts = Component::ALL.into_iter().filter(|component| component.scatters_within_runs());
     let parts = parts.map(|component| noise[component].powi(2));
-    let floor = (noise.sample.powi(2) + parts.iter().sum::<f64>()).min(after_ug.powi(2));
+    let floor = (noise.sample.powi(2) + parts.sum::<f64>()).min(after_ug.powi(2));
     let excess = before_ug.powi(2) - floor;
     if excess > 0.0 { ((before_ug.powi(2) - after_ug.powi(2)) / excess).clamp(0.0, 1.0) } else { 0.0 }
 }
