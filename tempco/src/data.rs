@@ -1,10 +1,13 @@
 //! Options that several commands share: which measurements, which runs.
 
+mod columns;
+
 use crate::failure::Failure;
 use crate::shell;
 use crate::terminal::remark;
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
+use columns::Columns;
 use std::path::PathBuf;
 use trainer::campaign::{Campaign, HoldOut, Measured, ReadAs, ReadOptions};
 use trainer::model::Model;
@@ -48,13 +51,14 @@ pub struct Reading {
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     pub constant_reference: Option<f64>,
 
-    /// Keeps only these auxiliary channels, in this order
-    #[arg(long, value_name = "COLUMN,…", value_delimiter = ',')]
-    pub channels: Option<Vec<String>>,
+    /// Keeps only these auxiliary channels, in this order. May be repeated; a name that has a comma stands in double quotes,
+    /// as in a CSV file: `--channels '"supply, V",pressure_kpa'`
+    #[arg(long, value_name = "COLUMN,…")]
+    pub channels: Option<Vec<Columns>>,
 
-    /// Leaves these columns unread
-    #[arg(long, value_name = "COLUMN,…", value_delimiter = ',')]
-    pub ignore: Vec<String>,
+    /// Leaves these columns unread. May be repeated, and quoted like `--channels`
+    #[arg(long, value_name = "COLUMN,…")]
+    pub ignore: Vec<Columns>,
 }
 
 impl Data {
@@ -97,8 +101,8 @@ impl Reading {
         let mut options = ReadOptions {
             signal: measured(self.signal.as_ref(), self.signal_unit.as_ref()),
             reference: measured(self.reference.as_ref(), self.reference_unit.as_ref()),
-            channels: self.channels.clone(),
-            ignore: self.ignore.clone(),
+            channels: self.channels.as_deref().map(Columns::names),
+            ignore: Columns::names(&self.ignore),
             constant_reference: self.constant_reference,
             ..ReadOptions::default()
         };
@@ -141,7 +145,7 @@ fn spelt(read_as: &ReadAs) -> impl Iterator<Item = String> {
 
 /// Options as they are typed.
 fn words(options: &ReadOptions) -> impl Iterator<Item = String> + use<> {
-    let list = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
+    let list = |names: &[String]| (!names.is_empty()).then(|| columns::typed(names));
     let (signal, reference) = (options.signal.as_ref(), options.reference.as_ref());
     let one = [
         ("--signal", signal.map(|signal| signal.column.clone())),

@@ -226,3 +226,30 @@ fn a_run_whose_name_has_a_comma_is_held_out_by_that_name() {
         stderr_of(tempco(folder.path()).args(["train", "c.csv", "--hold-out", "full-1,zero-9"]), 2).contains("zero-9")
     );
 }
+
+#[test]
+fn a_column_whose_name_has_a_comma_is_named_in_quotes_and_typed_again_like_that() {
+    let folder = TempDir::new().expect("a folder");
+    with_supply(folder.path());
+    let path = folder.path().join("supply.csv");
+    let table =
+        fs::read_to_string(&path).expect("written").replacen("supply_v", "\"supply, V\",\"by \"\"hand\"\", °C\"", 1);
+    let (head, rows) = table.split_once('\n').expect("lines");
+    let rows: Vec<String> = rows.lines().map(|row| format!("{row},warm")).collect();
+    fs::write(&path, format!("{head}\n{}\n", rows.join("\n"))).expect("written");
+    let channels = ["--channels", "\"supply, V\""];
+    let ignore = ["--ignore", "\"by \"\"hand\"\", °C\""];
+    let mut command = tempco(folder.path());
+    stdout(command.args(["train", "supply.csv", "-o", "model.toml", "--restarts", "1"]).args(channels).args(ignore));
+    let model = fs::read_to_string(folder.path().join("model.toml")).expect("written");
+    assert!(model.contains("channels = [\"supply, V\"]"), "{model}");
+    let note = stderr_of(tempco(folder.path()).args(["compare", "model.toml", "supply.csv"]), 0);
+    assert!(note.contains("--channels '\"supply, V\"' --ignore '\"by \"\"hand\"\", °C\"'"), "{note}");
+    // Told apart from two columns, named one after the other or each for itself.
+    let refused = |options: &[&str]| stderr_of(tempco(folder.path()).args(["inspect", "supply.csv"]).args(options), 2);
+    for options in
+        [["--channels", "supply, V", ignore[0], ignore[1]], [channels[0], channels[1], "--channels", "supply"]]
+    {
+        assert!(refused(&options).contains("supply"), "{options:?}");
+    }
+}
