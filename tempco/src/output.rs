@@ -227,3 +227,98 @@ fn is_disk(found: &std::fs::Metadata) -> bool {
 fn is_disk(_: &std::fs::Metadata) -> bool {
     false
 }
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::io::Read;
+    use tempfile::TempDir;
+
+    const OURS: &[u8] = b"a model";
+
+    /// What stands in a folder.
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).expect("a folder").flatten();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.file_name().into_string().expect("plain letters")).collect();
+        names.sort();
+        names
+    }
+
+    fn model(path: &Path, force: bool) -> Output {
+        Output::file(path, Kind::Model, "-o", Force { force })
+    }
+
+    #[test]
+    fn what_is_prepared_is_seen_when_it_is_placed_and_not_before() {
+        let folder = TempDir::new().expect("a folder");
+        let path = folder.path().join("model.toml");
+        let output = model(&path, true);
+        drop(output.prepare(OURS).expect("written"));
+        assert!(!path.exists());
+        let prepared = output.prepare(OURS).expect("written");
+        assert!(!path.exists());
+        prepared.place().expect("placed");
+        assert_eq!(fs::read(&path).expect("readable"), OURS);
+
+        let mut reader = fs::File::open(&path).expect("readable");
+        let prepared = output.prepare(b"another").expect("written");
+        assert_eq!(fs::read(&path).expect("readable"), OURS);
+        prepared.place().expect("placed");
+        assert_eq!(fs::read(&path).expect("readable"), b"another");
+        // The name went to another file: who had opened the old one reads it to its end.
+        let mut old = Vec::new();
+        reader.read_to_end(&mut old).expect("readable");
+        assert_eq!(old, OURS);
+        assert_eq!(names(folder.path()), ["model.toml"]);
+    }
+
+    #[test]
+    fn what_came_to_the_place_meanwhile_stays_there() {
+        let folder = TempDir::new().expect("a folder");
+        let path = folder.path().join("model.toml");
+        let output = model(&path, false);
+        output.check().expect("a free name");
+        let prepared = output.prepare(OURS).expect("written");
+        fs::write(&path, "three days of measurements").expect("written");
+        let refused = prepared.place().expect_err("it is somebody's").to_string();
+        assert!(refused.contains("not written by tempco"), "{refused}");
+        assert_eq!(fs::read(&path).expect("readable"), b"three days of measurements");
+        assert_eq!(names(folder.path()), ["model.toml"]);
+
+        let forced = model(&path, true);
+        forced.write(OURS).expect("forced");
+        assert_eq!(fs::read(&path).expect("readable"), OURS);
+        // Not even by force over what the command reads.
+        fs::write(&path, "an input").expect("written");
+        let refused = forced.reading([&path]).write(OURS).expect_err("an input").to_string();
+        assert!(refused.contains("this command reads it"), "{refused}");
+        assert_eq!(fs::read(&path).expect("readable"), b"an input");
+    }
+
+    #[test]
+    fn a_link_stays_and_the_file_that_it_names_is_replaced() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = TempDir::new().expect("a folder");
+        let (there, link) = (folder.path().join("there"), folder.path().join("link.toml"));
+        fs::create_dir(&there).expect("a folder");
+        let (named, second) = (there.join("model.toml"), there.join("second.toml"));
+        fs::write(&named, "old").expect("written");
+        fs::set_permissions(&named, fs::Permissions::from_mode(0o640)).expect("its own");
+        fs::hard_link(&named, &second).expect("a second name");
+        symlink("there/model.toml", &link).expect("a link");
+        model(&link, true).write(OURS).expect("written");
+        assert_eq!(fs::read_link(&link).expect("still a link"), Path::new("there/model.toml"));
+        assert_eq!(fs::read(&named).expect("readable"), OURS);
+        assert_eq!(fs::metadata(&named).expect("there").permissions().mode() & 0o777, 0o640);
+        // The old bytes' second name keeps them.
+        assert_eq!(fs::read(&second).expect("readable"), b"old");
+        assert_eq!(names(&there), ["model.toml", "second.toml"]);
+        assert_eq!(names(folder.path()), ["link.toml", "there"]);
+
+        fs::remove_file(&named).expect("removed");
+        let refused = model(&link, true).check().expect_err("nothing there").to_string();
+        assert!(refused.contains("leads nowhere"), "{refused}");
+    }
+}
