@@ -253,3 +253,57 @@ fn a_column_whose_name_has_a_comma_is_named_in_quotes_and_typed_again_like_that(
         assert!(refused(&options).contains("supply"), "{options:?}");
     }
 }
+
+#[test]
+fn the_restarts_of_a_training_are_told_one_by_one_and_by_their_quartiles() {
+    let folder = TempDir::new().expect("a folder");
+    let train = ["train", SMALL, "--restarts", "5"];
+    let text = stdout(tempco(folder.path()).args(train));
+    let after = |head: &str| text.lines().skip_while(|line| !line.trim_start().starts_with(head)).nth(1);
+    let row: Vec<f64> = after("restarts").expect("a table").split_whitespace().flat_map(str::parse).collect();
+    let in_order =
+        text.lines().find_map(|line| line.trim_start().strip_prefix("in order, µg: ")).expect("each of them");
+    let mut each: Vec<f64> = in_order.split(' ').flat_map(str::parse).collect();
+    let told = stdout(tempco(folder.path()).args(train).arg("--json"));
+    let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+    let restarts = told["restarts"].as_array().expect("restarts");
+    let converged = restarts.iter().filter(|restart| restart["converged"] == true).count();
+    assert_eq!((row.len(), row[0], row[1], each.len()), (7, 5.0, converged as f64, 5), "{text}");
+    for (restart, shown) in restarts.iter().zip(&each) {
+        let residual_ug = restart["residual_ug"].as_f64().expect("a number");
+        assert!((residual_ug - shown).abs() < 0.006 && residual_ug > 1.0, "{residual_ug} {shown}");
+    }
+    each.sort_by(f64::total_cmp);
+    assert!(row[2..].iter().zip(&each).all(|(one, other)| (one - other).abs() < 0.006), "{row:?} {each:?}");
+}
+
+#[test]
+fn a_cross_validation_takes_the_same_restarts_whatever_the_model_took() {
+    let folder = TempDir::new().expect("a folder");
+    let validated = |restarts: &str| {
+        stdout(tempco(folder.path()).args(["train", SMALL, "-o", "model.toml", "--restarts", restarts]));
+        let text = stdout(tempco(folder.path()).args(["compare", "model.toml", SMALL, "--cross-validate", "--json"]));
+        let told: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        told["cross_validation"].clone()
+    };
+    let (one, two) = (validated("1"), validated("2"));
+    assert!(one.is_object() && one == two, "{one:#} {two:#}");
+}
+
+#[test]
+fn a_campaign_is_shown_run_by_run() {
+    let folder = TempDir::new().expect("a folder");
+    // Twelve rows 2 s apart, the last one after an hour; four at each level.
+    let row = |k: usize| {
+        let (time_s, level_g) = (if k == 11 { 3_600 } else { 2 * k }, [1.0, 0.0, -1.0][k / 4]);
+        let temperature_c = [-10.5, 0.0, 12.25][k % 3];
+        format!("one,tumble,{time_s},{temperature_c},{},{level_g}\n", 76.0 + 420.0 * level_g)
+    };
+    let rows: String = (0..12).map(row).collect();
+    let table = format!("run,kind,time_s,temperature_c,delta_f_hz,reference_g\n{rows}two,zero,0,20,76,0\n");
+    fs::write(folder.path().join("two.csv"), table).expect("written");
+    let text = stdout(tempco(folder.path()).args(["inspect", "two.csv"]));
+    let lines: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split_whitespace().collect()).collect();
+    assert_eq!(lines[0], ["one", "tumble", "12", "2.00", "1.00", "-10.5", "12.2", "3"], "{text}");
+    assert_eq!(lines[1], ["two", "zero", "1", "–", "0.00", "20.0", "20.0", "1"], "{text}");
+}

@@ -131,6 +131,22 @@ fn effects_that_are_asked_for_are_planned_for_and_what_can_not_be_says_what_to_d
     let text = run(folder, &["plan", "model.toml", "old.csv", "--effects", "supply-voltage"]);
     assert!(text.starts_with("Is there supply-voltage, or not?") && text.contains("supply-sweep"), "{text}");
     assert!(text.contains("Write supply_v into the old files too"), "{text}");
+    // What it says to do next can be done.
+    let next = text.lines().find_map(|line| line.strip_prefix("Next:  tempco ")).expect("a next step");
+    assert!(next.ends_with("# writes supply-sweep as a scenario"), "{next}");
+    let next = next.split_once('#').map_or(next, |(command, _)| command);
+    let options = ["--effects", "supply-voltage"];
+    let text = run(folder, &[&next.split_whitespace().collect::<Vec<_>>()[..], &options].concat());
+    assert!(
+        text.contains("supply-sweep is written to next/supply-sweep.toml.\nRehearse it:  tempco simulate next/"),
+        "{text}"
+    );
+    assert!(
+        text.contains("tempco train old.csv new.csv -o model2.toml && tempco diagnose model2.toml old.csv new.csv"),
+        "{text}"
+    );
+    let rehearsed = run(folder, &["simulate", "next/supply-sweep.toml", "-o", "new.csv"]);
+    assert!(rehearsed.contains("new.csv"), "{rehearsed}");
     let text = run(folder, &["plan", "model.toml", "old.csv"]);
     assert!(text.contains("This campaign could not show") && text.contains("vibration-sweep"), "{text}");
     for (arguments, place) in [(["--effects", "thermal-leg"], "thermal-leg"), (["--hours", "0.5"], "--hours 2")] {

@@ -174,3 +174,20 @@ pub fn rungs_table(rungs: &[Rung], noise: Option<(&str, f64)>) -> Table {
     }
     table
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rungs_are_drawn_in_proportion_to_the_highest_and_only_effects_are_added() {
+        let rung = |effect: &str, residual_ug: f64| Rung { effect: effect.to_owned(), residual_ug };
+        let table = rungs_table(&[rung(BARE, 20.0), rung("thermal-lag", 10.0)], Some(("noise", 5.0))).to_string();
+        let lines: Vec<(&str, usize)> =
+            table.lines().skip(1).map(|line| (line.trim_matches([' ', '█']), line.matches('█').count())).collect();
+        let [(bare, 40), (lag, 20), (noise, 10)] = lines[..] else { panic!("{table}") };
+        assert!(bare.starts_with(BARE) && bare.ends_with(" 20.00"), "{table}");
+        assert!(lag.starts_with("+ thermal-lag ") && lag.ends_with(" 10.00"), "{table}");
+        assert!(noise.starts_with("noise ") && noise.ends_with(" 5.00"), "{table}");
+    }
+}

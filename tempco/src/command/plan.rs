@@ -211,3 +211,23 @@ fn explained(error: PlanError) -> Failure {
         None => failure,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wish_is_typed_again_as_the_options_that_it_is() {
+        assert_eq!(Wish::default().words(), "");
+        let wish = Wish { effects: vec!["thermal-lag".to_owned(), "warm-up".to_owned()], hours: Some(2.5) };
+        assert_eq!(wish.words(), " --effects thermal-lag,warm-up --hours 2.5");
+        assert_eq!(Wish { hours: None, ..wish }.words(), " --effects thermal-lag,warm-up");
+    }
+
+    #[test]
+    fn an_effect_follows_the_column_of_its_channel_or_the_age() {
+        assert_eq!(column("supply-voltage"), Some("supply_v"));
+        assert_eq!(column("aging"), Some("age_days"));
+        assert_eq!((column("thermal-lag"), column("nothing")), (None, None));
+    }
+}

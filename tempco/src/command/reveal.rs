@@ -141,3 +141,27 @@ pub fn json(truth: &SealedTruth) -> serde_json::Value {
         "hidden": hidden,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parameter_has_four_digits_and_no_zeros_behind_them() {
+        for (value, text) in [
+            (0.0, "0.0"),
+            (35.0, "35"),
+            (1234.56, "1235"),
+            (100.0, "100"),
+            (-0.012_345_6, "-0.01235"),
+            (0.001, "0.001"),
+            (0.000_999, "9.990e-4"),
+            (-1e6, "-1.000e6"),
+            (999_999.0, "999999"),
+            (12.3, "12.3"),
+        ] {
+            assert_eq!(short(&toml::Value::Float(value)), text, "{value}");
+        }
+        assert_eq!(short(&toml::Value::Integer(5)), "5");
+    }
+}

@@ -50,3 +50,24 @@ fn line(message: &Unasked, reading: &Reading) -> String {
     });
     line.to_string()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::Status;
+
+    #[test]
+    fn a_reading_has_its_sign_and_one_without_a_number_says_why() {
+        let reading = Reading { time_us: 2_250_000, acceleration_g: 0.25, status: Status::empty() };
+        assert_eq!(row(&reading), "     2.250     +0.250000  good");
+        let none = Reading::none(2_250_000, Status::UNCALIBRATED);
+        assert_eq!(row(&none), "     2.250             –  uncalibrated");
+        let message = |reading| Unasked { number: 3, content: Content::Reading(reading) };
+        let told = |reading: Reading| -> serde_json::Value {
+            serde_json::from_str(&line(&message(reading), &reading)).expect("JSON")
+        };
+        let expected = serde_json::json!({"number": 3, "time_us": 2_250_000, "acceleration_g": 0.25, "status": []});
+        assert_eq!(told(reading), expected);
+        assert_eq!(told(none)["acceleration_g"], serde_json::Value::Null);
+    }
+}

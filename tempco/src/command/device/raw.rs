@@ -61,3 +61,28 @@ fn measured(sample: &Sample) -> (Option<f64>, Option<f64>) {
         good(Status::RESONATOR_FAULT).then_some(sample.delta_f_uhz as f64 * 1e-6),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::Status;
+
+    #[test]
+    fn a_row_is_in_the_units_of_its_header_and_what_failed_is_empty() {
+        let sample = Sample::from_pair(1_500_000, 40_000_250_000, 39_999_750_000, -12_345_678);
+        assert_eq!(row(&sample), "1.500000,-12.345678,0.500000,80000.000000,");
+        let broken = Sample { faults: Status::THERMOMETER_FAULT, ..sample };
+        assert_eq!(row(&broken), "1.500000,,0.500000,80000.000000,thermometer-fault");
+        let silent = Sample { faults: Status::RESONATOR_FAULT, sum_f_uhz: None, ..sample };
+        assert_eq!(row(&silent), "1.500000,-12.345678,,,resonator-fault");
+
+        let message = |sample| Unasked { number: 7, content: Content::Sample(sample) };
+        let told: serde_json::Value = serde_json::from_str(&line(&message(broken), &broken)).expect("JSON");
+        let expected = serde_json::json!({
+            "number": 7, "time_us": 1_500_000, "temperature_c": null, "delta_f_hz": 0.5, "sum_f_hz": 80_000.0,
+            "faults": ["thermometer-fault"],
+        });
+        assert_eq!(told, expected);
+        assert_eq!(measured(&silent), (Some(-12_345_678.0 * 1e-6), None));
+    }
+}

@@ -67,3 +67,46 @@ fn json(state: &InstrumentState, storage: &StorageState) -> serde_json::Value {
         "readings": state.readings, "raised": names(state.raised),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::Status as Flags;
+
+    const STATE: InstrumentState = InstrumentState { provenance: Some([0xAB; 8]), readings: 12, raised: Flags::STALE };
+    const STORAGE: StorageState =
+        StorageState { source: Source::Committed, sequence: 3, can_roll_back: true, erases: [4, 5], key: None };
+
+    #[test]
+    fn an_instruments_state_is_told_in_five_lines() {
+        assert_eq!(
+            text(&STATE, &STORAGE),
+            "calibration  abababababababab, number 3 of those sent over the wire\nbefore it    there is one to go back \
+             to\nsignature    not asked for\nerases       4 and 5 of each slot\nreadings     12 since power-on; raised: \
+             stale\n"
+        );
+        let locked = StorageState { can_roll_back: false, key: Some([0x10; 8]), ..STORAGE };
+        let text = text(&STATE, &locked);
+        assert!(text.contains("there is none to go back to"), "{text}");
+        assert!(text.contains("asked for, by the key 1010101010101010…"), "{text}");
+    }
+
+    #[test]
+    fn where_a_calibration_comes_from_is_told_to_people_and_to_programs() {
+        for (source, words, word) in [
+            (Source::Nothing, "none: every reading is without a number", "nothing"),
+            (Source::Factory, "abababababababab, put into flash by a programmer", "factory"),
+            (Source::UntilPowerOff, "abababababababab, in RAM until power-off: storing it failed", "until-power-off"),
+        ] {
+            let storage = StorageState { source, ..STORAGE };
+            assert!(text(&STATE, &storage).starts_with(&format!("calibration  {words}\n")));
+            assert_eq!(json(&STATE, &storage)["source"], word);
+        }
+        let value = json(&STATE, &STORAGE);
+        let expected = serde_json::json!({
+            "calibration": "abababababababab", "source": "committed", "sequence": 3, "can_roll_back": true,
+            "erases": [4, 5], "key": null, "readings": 12, "raised": ["stale"],
+        });
+        assert_eq!(value, expected);
+    }
+}

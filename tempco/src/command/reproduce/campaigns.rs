@@ -197,3 +197,58 @@ fn in_memory(recording: &Recording) -> Campaign {
     };
     Campaign::new(recording.runs.iter().map(run).collect(), Vec::new(), Quantity::default())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_variant_lacks_one_thing_and_no_other() {
+        let scenario = Scenario::preset("seed-a2").expect("a scenario");
+        let all = scenario.effects.active();
+        assert!(all.len() > 1, "{all:?}");
+        let variants = variants(&scenario);
+        assert_eq!(variants.len(), all.len() + 2);
+        for (name, (title, variant)) in all.iter().zip(&variants) {
+            assert_eq!(*title, format!("the effect `{name}`"));
+            let left: Vec<&str> = all.iter().copied().filter(|other| other != name).collect();
+            assert_eq!(variant.effects.active(), left);
+            assert_eq!(variant.rig, scenario.rig);
+        }
+        let [(_, no_errors), (_, good)] = &variants[all.len()..] else { panic!("two more") };
+        assert!(no_errors.rig == scenario.rig.without_errors() && no_errors.rig != scenario.rig);
+        assert!(no_errors.effects.active() == all && good.effects.active() == all && good.rig == scenario.rig);
+        assert!(good.run.iter().all(|run| run.common.bad_state.is_empty()));
+        assert!(no_errors.run == scenario.run && good.run != scenario.run);
+    }
+
+    #[test]
+    fn the_truth_is_the_simulated_sensors_own_map_there_and_back() {
+        let recording = simulate::simulate(&Scenario::preset("seed").expect("a scenario"), 1).expect("a recording");
+        let map = Map(recording.static_map());
+        for (acceleration_g, temperature_c) in [(-1.0, -40.0), (0.0, 20.0), (0.5, 60.0)] {
+            let delta_f_hz = map.delta_f_hz(acceleration_g, temperature_c);
+            assert!((map.acceleration_g(delta_f_hz, temperature_c) - acceleration_g).abs() < 1e-9);
+        }
+        assert!(map.delta_f_hz(1.0, 20.0) - map.delta_f_hz(0.0, 20.0) > 10.0);
+
+        let campaign = in_memory(&recording);
+        let (rows, first) = (&campaign.runs[0].rows, &recording.runs[0].rows);
+        assert_eq!((campaign.runs.len(), rows.len()), (recording.runs.len(), first.len()));
+        for (row, recorded) in rows.iter().zip(first) {
+            let near = |micro: f64, value: f64| (micro - value * 1e6).abs() <= 0.5;
+            assert!(
+                near(row.sample.time_us as f64, recorded.time_s)
+                    && near(row.sample.delta_f_uhz as f64, recorded.delta_f_hz)
+            );
+            assert!(near(f64::from(row.sample.temperature_uc), recorded.temperature_c));
+            assert!(
+                near(row.sample.power_on_us as f64, recorded.power_on_s) && row.reference_g == recorded.reference_g
+            );
+        }
+        assert!(same_rows(&campaign.runs, &campaign.runs.clone()));
+        assert!(
+            !same_rows(&campaign.runs[..1], &campaign.runs[1..2]) && !same_rows(&campaign.runs, &campaign.runs[1..])
+        );
+    }
+}

@@ -61,3 +61,43 @@ pub fn percent(share: Share) -> String {
     let value = share.percent();
     if value > 0.0 && value < 9.95 { format!("{value:.1}") } else { format!("{value:.0}") }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trainer::reproduction::contender::{Contender, FIELDS};
+
+    #[test]
+    fn a_share_has_a_decimal_below_ten_per_cent_and_none_above_or_of_nothing() {
+        for (hits, text) in [(0, "0"), (1, "0.1"), (99, "9.9"), (100, "10"), (555, "56"), (1000, "100")] {
+            assert_eq!(percent(Share { hits, of: 1000 }), text);
+        }
+        assert_eq!(percent(Share { hits: 995, of: 10_000 }), "10");
+    }
+
+    #[test]
+    fn domains_stand_together_by_what_the_seeds_say_of_them() {
+        let of = |index: usize, verdict: Verdict, hits: usize, against: Option<usize>| {
+            let share = |hits| Share { hits, of: 100 };
+            Outcome { field: FIELDS[index], verdict, share: share(hits), against: against.map(share) }
+        };
+        let outcomes = [
+            of(0, Verdict::Fails, 3, Some(40)),
+            of(1, Verdict::Holds, 90, Some(20)),
+            of(2, Verdict::Open, 50, Some(51)),
+            of(3, Verdict::Holds, 80, Some(7)),
+        ];
+        let outcomes: Vec<&Outcome> = outcomes.iter().collect();
+        let (more, other) = (
+            Measure::FindsMore(Contender::IfaPrinted, Contender::FaPrinted),
+            CLAIMS.iter().map(|claim| &claim.measure).find(|measure| !matches!(measure, Measure::FindsMore(..))),
+        );
+        assert_eq!(
+            verdicts(&more, &outcomes),
+            "holds for |x| ≤ 2 (90 against 20 %), 10 (80 against 7.0 %); no difference to be seen for |x| ≤ 5 (50 \
+             against 51 %); the opposite holds for |x| ≤ 1 (3.0 against 40 %)"
+        );
+        let alone = of(0, Verdict::Fails, 3, None);
+        assert_eq!(verdicts(other.expect("a claim of one search"), &[&alone]), "does not hold for |x| ≤ 1 (3.0 %)");
+    }
+}

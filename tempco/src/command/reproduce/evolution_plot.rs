@@ -109,3 +109,31 @@ fn band(quartiles: &[Quartiles], high: f64) -> Vec<(usize, f64)> {
     let upper = quartiles.iter().enumerate().map(|(n, q)| (n, q.upper.min(high)));
     lower.chain(upper.rev()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trainer::reproduction::contender::FIELDS;
+
+    fn trial(uppers: &[f64]) -> Trial {
+        let history: Vec<Generation> = uppers.iter().map(|&mean| Generation { best: 0.0, mean }).collect();
+        let evolution = Evolution::of(&[history]);
+        Trial { contender: Contender::FaPrinted, field: FIELDS[4], evaluations: 0.0, ends: Vec::new(), evolution }
+    }
+
+    #[test]
+    fn the_scale_is_common_and_leaves_a_margin_below_the_minimum_and_above_the_highest_band() {
+        let (one, other) = (trial(&[3.0, 8.0, 2.0]), trial(&[10.0, 5.0]));
+        let minimum = FIELDS[4].function.minimum;
+        let (low, high) = range(&[&one, &other]);
+        let margin = 0.04 * (10.0 - minimum);
+        assert!((low - (minimum - margin)).abs() < 1e-12 && (high - (10.0 + margin)).abs() < 1e-12, "{low} {high}");
+    }
+
+    #[test]
+    fn a_band_goes_there_along_its_lower_edge_and_back_along_its_upper_and_stays_in_the_picture() {
+        let of = |lower: f64, upper: f64| Quartiles { lower, median: lower, upper };
+        let outline = band(&[of(1.0, 9.0), of(2.0, 3.0)], 5.0);
+        assert_eq!(outline, [(0, 1.0), (1, 2.0), (1, 3.0), (0, 5.0)]);
+    }
+}

@@ -38,6 +38,11 @@ const fn colour(contender: Contender) -> RGBColor {
 /// So far apart stand the bars of one domain, in units of the distance of domains.
 const APART: f64 = 0.05;
 
+/// How far a search's bars stand from the middle of their domain.
+fn shift(index: usize) -> f64 {
+    (index as f64 - (Contender::ALL.len() - 1) as f64 / 2.0) * APART
+}
+
 fn draw(area: &Area, function: &str, trials: &[&Trial]) -> Result<(), DrawError> {
     let of = |contender| trials.iter().filter(move |trial| trial.contender == contender);
     let widths: Vec<f64> = of(Contender::RandomPoints).map(|trial| trial.field.half_width).collect();
@@ -62,7 +67,7 @@ fn draw(area: &Area, function: &str, trials: &[&Trial]) -> Result<(), DrawError>
         .y_desc("seeds that find it");
     grid.draw()?;
     for (index, contender) in Contender::ALL.into_iter().enumerate() {
-        let shift = (index as f64 - (Contender::ALL.len() - 1) as f64 / 2.0) * APART;
+        let shift = shift(index);
         let (line, dot) = (colour(contender).stroke_width(2), colour(contender).filled());
         let points: Vec<(f64, &Trial)> =
             of(contender).enumerate().map(|(position, trial)| (position as f64 + shift, *trial)).collect();
@@ -73,4 +78,29 @@ fn draw(area: &Area, function: &str, trials: &[&Trial]) -> Result<(), DrawError>
         chart.draw_series(points.iter().map(|(x, trial)| Circle::new((*x, trial.found().percent()), 4, dot)))?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trainer::reproduction::contender::FIELDS;
+    use trainer::reproduction::trial::trial;
+
+    #[test]
+    fn the_bars_of_a_domain_stand_side_by_side_around_its_middle() {
+        let shifts: Vec<f64> = (0..Contender::ALL.len()).map(shift).collect();
+        assert!(shifts.windows(2).all(|pair| (pair[1] - pair[0] - APART).abs() < 1e-12), "{shifts:?}");
+        assert!(shifts.iter().sum::<f64>().abs() < 1e-12, "{shifts:?}");
+    }
+
+    #[test]
+    fn every_domain_is_named_below_its_bars_once() {
+        let points = |field| trial(Contender::RandomPoints, field, 3, 1).expect("a field with extent");
+        let svg = rates(&FIELDS.map(points)).expect("a picture");
+        let texts: Vec<&str> = svg.lines().map(str::trim).collect();
+        let shown = |text: &str| texts.iter().filter(|one| **one == text).count();
+        for (text, times) in [("±1", 2), ("±2", 2), ("±5", 1), ("±5.12", 1), ("±10", 2), ("100 %", 2)] {
+            assert_eq!(shown(text), times, "{text}");
+        }
+    }
 }

@@ -75,3 +75,40 @@ fn cell(trial: &Trial) -> String {
 fn percent(share: Share) -> String {
     format!("{:.1}", share.percent())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trainer::fit::firefly::Generation;
+
+    /// So many of a hundred seeds find the minimum, and one gathers there.
+    fn found(hits: usize) -> Trial {
+        let field = FIELDS[0];
+        let (minimum, away) = (field.function.minimum, field.function.minimum + 1e3);
+        let end = |seed: usize| Generation {
+            best: if seed < hits { minimum } else { away },
+            mean: if seed == 0 { minimum } else { away },
+        };
+        let ends = (0..100).map(end).collect();
+        Trial { contender: Contender::FaPrinted, field, evaluations: 510.4, ends, evolution: None }
+    }
+
+    #[test]
+    fn the_widest_interval_is_that_of_the_share_nearest_to_a_half() {
+        // Wilson's interval of 50 of 100 reaches from 40.4 to 59.6 %.
+        let widest = widest(&[found(0), found(50), found(90)]);
+        assert!((widest - 9.6).abs() < 0.05, "{widest}");
+    }
+
+    #[test]
+    fn a_cell_says_what_share_found_it_and_what_share_gathered_there() {
+        let alone = found(25);
+        assert_eq!(cell(&alone), "25.0     (–)");
+        let history = vec![vec![Generation { best: 1.0, mean: 1.0 }; 2]];
+        let swarm = Trial { evolution: trainer::reproduction::evolution::Evolution::of(&history), ..alone.clone() };
+        assert_eq!(cell(&swarm), "25.0   (1.0)");
+        let text = text(&[alone], 7);
+        assert!(text.contains("; 100 seeds of stream 7.") && text.contains("FA as printed"), "{text}");
+        assert!(text.lines().any(|line| line.contains("FA as printed") && line.trim_end().ends_with("510")), "{text}");
+    }
+}

@@ -56,9 +56,7 @@ fn readings(area: &Area, columns: &[(&Judgement, RGBColor)]) -> Result<(), DrawE
     grid.x_label_formatter(&g).y_label_formatter(&g);
     grid.x_desc("applied acceleration, g").y_desc("reading, g").draw()?;
     for (column, colour) in columns {
-        let shown = column.sweep.curves.iter().find(|curve| curve.temperature_c == SHOWN_C);
-        let points = shown.into_iter().flat_map(|curve| &curve.points);
-        chart.draw_series(LineSeries::new(points.map(|[a, residual]| (*a, a + residual)), colour.stroke_width(2)))?;
+        chart.draw_series(LineSeries::new(at_shown_temperature(&column.sweep.curves), colour.stroke_width(2)))?;
     }
     for level in [-1.0, 0.0, 1.0] {
         chart.draw_series([Circle::new((level, level), 6, axis())])?;
@@ -73,12 +71,6 @@ fn residuals(area: &Area, columns: &[(&Judgement, RGBColor)]) -> Result<(), Draw
         .x_label_area_size(48)
         .y_label_area_size(78)
         .build_cartesian_2d(-1.02..1.02, (LOW_UG..HIGH_UG).log_scale())?;
-    let size = |value: &f64| match *value {
-        value if value >= 0.999e6 => "1 g".to_owned(),
-        value if value >= 999.0 => format!("{:.0} mg", value / 1e3),
-        value if value >= 0.999 => format!("{value:.0} µg"),
-        value => format!("{value} µg"),
-    };
     let mut grid = chart.configure_mesh();
     grid.x_labels(11).y_labels(9).light_line_style(WHITE).bold_line_style(mesh());
     grid.axis_style(axis()).label_style(label()).axis_desc_style(label());
@@ -94,6 +86,23 @@ fn g(value: &f64) -> String {
     if value.abs() < 1e-9 { "0".to_owned() } else { format!("{value:+.1}").replace('-', "−") }
 }
 
+/// A power of ten of µg in its usual unit.
+fn size(value_ug: &f64) -> String {
+    match *value_ug {
+        value if value >= 0.999e6 => "1 g".to_owned(),
+        value if value >= 999.0 => format!("{:.0} mg", value / 1e3),
+        value if value >= 0.999 => format!("{value:.0} µg"),
+        value => format!("{value} µg"),
+    }
+}
+
+/// Acceleration and reading, g.
+fn at_shown_temperature(curves: &[Curve]) -> Vec<(f64, f64)> {
+    let shown = curves.iter().filter(|curve| curve.temperature_c == SHOWN_C);
+    shown.flat_map(|curve| &curve.points).map(|[a, residual]| (*a, a + residual)).collect()
+}
+
+/// Acceleration, g, and residual over all temperatures, µg.
 fn over_temperature(curves: &[Curve]) -> Vec<(f64, f64)> {
     let Some(first) = curves.first() else { return Vec::new() };
     let at = |(index, [acceleration_g, _]): (usize, &[f64; 2])| {
@@ -101,4 +110,40 @@ fn over_temperature(curves: &[Curve]) -> Vec<(f64, f64)> {
         (*acceleration_g, (rms(&residuals) * 1e6).clamp(LOW_UG, HIGH_UG))
     };
     first.points.iter().enumerate().map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curves() -> Vec<Curve> {
+        let curve = |temperature_c: f64, residual_g: f64| Curve {
+            temperature_c,
+            points: vec![[-0.5, residual_g], [0.5, 0.0], [1.0, 1e3 * residual_g]],
+        };
+        vec![curve(-40.0, 3e-3), curve(SHOWN_C, 4e-3)]
+    }
+
+    #[test]
+    fn the_reading_is_that_of_one_temperature_and_the_residual_that_of_all() {
+        assert_eq!(at_shown_temperature(&curves()), [(-0.5, -0.496), (0.5, 0.5), (1.0, 5.0)]);
+        let over = over_temperature(&curves());
+        let root_ug = (12.5_f64 * 1e-6).sqrt() * 1e6;
+        assert!(over[0].0 == -0.5 && (over[0].1 / root_ug - 1.0).abs() < 1e-12, "{over:?}");
+        // What a logarithmic axis has no place for stands at its ends.
+        assert_eq!(over[1..], [(0.5, LOW_UG), (1.0, HIGH_UG)]);
+        assert_eq!(over_temperature(&[]), []);
+    }
+
+    #[test]
+    fn the_axes_are_labelled_in_usual_units() {
+        for (value_ug, text) in
+            [(0.1, "0.1 µg"), (1.0, "1 µg"), (100.0, "100 µg"), (1e3, "1 mg"), (1e5, "100 mg"), (1e6, "1 g")]
+        {
+            assert_eq!(size(&value_ug), text);
+        }
+        for (value_g, text) in [(0.0, "0"), (1e-12, "0"), (0.2, "+0.2"), (-1.0, "−1.0")] {
+            assert_eq!(g(&value_g), text);
+        }
+    }
 }

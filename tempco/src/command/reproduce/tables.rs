@@ -103,17 +103,22 @@ fn beyond(columns: &[Judgement]) -> Table {
 /// A slope further off than this measures no acceleration, ppm.
 const USELESS_PPM: f64 = 1e5;
 
+/// What a method is by its slope, and by its table.
+fn verdict(slope_ppm: f64, is_as_good_as_the_paper: bool) -> &'static str {
+    match is_as_good_as_the_paper {
+        _ if slope_ppm < USELESS_PPM => "an accelerometer",
+        true => "a beautiful table, a useless sensor",
+        false => "no accelerometer",
+    }
+}
+
 /// Which of the trained methods are accelerometers, and which of the paper's two trains better.
 fn words(columns: &[Judgement]) -> String {
     let mut text = String::new();
     for column in columns.iter().filter(|column| !column.restarts_ug.is_empty()) {
         let Share { hits, of } = column.as_good_as_the_paper();
         let (slope_ppm, half_g_ug) = (column.sweep.worst_slope_ppm(), column.sweep.at_half_g_ug());
-        let verdict = match () {
-            () if slope_ppm < USELESS_PPM => "an accelerometer",
-            () if hits == of => "a beautiful table, a useless sensor",
-            () => "no accelerometer",
-        };
+        let verdict = verdict(slope_ppm, hits == of);
         let (name, half_g) = (&column.name, number(half_g_ug * 1e-3));
         let slope = if slope_ppm < 1e3 {
             format!("{} ppm", number(slope_ppm))
@@ -167,4 +172,66 @@ fn blindness() -> String {
         raw_ppm * 1e-3,
         compensated_ppm * 1e-3
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trainer::reproduction::sweep::{Curve, Sweep};
+
+    /// A method that is as good as the paper in all cells but so many, and reads the acceleration with this slope.
+    fn method(name: &str, bad_cells: usize, slope: f64) -> Judgement {
+        let mut cells = ROWS.map(|row| Some(row.ifa_bp));
+        cells.iter_mut().take(bad_cells).for_each(|cell| *cell = Some(1e9));
+        let points = (-40..=40).map(|step| f64::from(step) / 40.0).map(|a| [a, (slope - 1.0) * a]).collect();
+        let sweep = Sweep { curves: vec![Curve { temperature_c: 20.0, points }] };
+        Judgement { name: name.to_owned(), cells, residual_ug: 5.0, sweep, restarts_ug: vec![1.0, 3.0] }
+    }
+
+    #[test]
+    fn a_method_is_called_by_its_slope_before_its_table() {
+        let raw = Judgement { restarts_ug: Vec::new(), ..method("raw", 0, 1.0) };
+        let columns = [raw, method("good", 2, 1.0002), method("classifier", 0, 0.0), method("neither", 1, 2.0)];
+        let of = ROWS.len();
+        assert_eq!(
+            words(&columns),
+            format!(
+                "  good: {} of {of} cells as good as the paper's; slope off by up to 200.0 ppm, 0.10 mg wrong at ±0.5 g: \
+                 an accelerometer.\n  classifier: {of} of {of} cells as good as the paper's; slope off by up to 100.0 %, \
+                 500.0 mg wrong at ±0.5 g: a beautiful table, a useless sensor.\n  neither: {} of {of} cells as good as \
+                 the paper's; slope off by up to 100.0 %, 500.0 mg wrong at ±0.5 g: no accelerometer.\n",
+                of - 2,
+                of - 1
+            )
+        );
+        assert_eq!((verdict(99_999.0, true), verdict(1e5, false)), ("an accelerometer", "no accelerometer"));
+    }
+
+    #[test]
+    fn of_the_papers_two_it_is_told_how_often_one_trains_better() {
+        let improved = Judgement { restarts_ug: vec![1.0, 2.0, 3.0, 9.0], ..method(IFA_BP, 0, 1.0) };
+        let standard = Judgement { restarts_ug: vec![4.0], ..method(FA_BP, 0, 1.0) };
+        assert!(
+            words(&[standard, improved]).contains("IFA-BP ends with the lower training residual in 75 % of all pairs")
+        );
+    }
+
+    #[test]
+    fn a_cell_above_the_paper_is_marked_for_the_default_method_only() {
+        let table = figures(&[method(DEFAULT, 1, 1.0), method(FA_BP, 1, 1.0)], |_| true).to_string();
+        assert_eq!(table.matches("*1000000000").count(), 1, "{table}");
+        assert_eq!(table.lines().count(), 1 + ROWS.len(), "{table}");
+    }
+
+    #[test]
+    fn the_papers_two_raw_variations_of_one_device_stand_side_by_side() {
+        let text = same_device(&[]);
+        let printed: Vec<String> = ROWS
+            .iter()
+            .filter(|row| row.figure == Figure::ScaleFactorVariation)
+            .map(|row| format!("{} ppm", number(row.raw)))
+            .collect();
+        assert!(text.contains(&format!("the paper prints {} for", printed.join(" and "))), "{text}");
+        assert!(text.contains("there the model is blind"), "{text}");
+    }
 }
