@@ -7,6 +7,8 @@ pub mod demo;
 pub mod device;
 pub mod diagnose;
 pub mod effects;
+#[cfg(test)]
+mod example;
 pub mod export;
 pub mod flash;
 pub mod inspect;

@@ -89,7 +89,8 @@ mod tests {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod in_a_shell {
     use super::*;
     use std::os::unix::ffi::{OsStrExt, OsStringExt};

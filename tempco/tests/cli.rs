@@ -307,3 +307,16 @@ fn a_campaign_is_shown_run_by_run() {
     assert_eq!(lines[0], ["one", "tumble", "12", "2.00", "1.00", "-10.5", "12.2", "3"], "{text}");
     assert_eq!(lines[1], ["two", "zero", "1", "–", "0.00", "20.0", "20.0", "1"], "{text}");
 }
+
+#[test]
+fn every_built_in_scenario_is_listed_with_what_it_is() {
+    let folder = TempDir::new().expect("a folder");
+    let text = stdout(tempco(folder.path()).arg("simulate"));
+    for line in text.lines() {
+        let (name, description) = line.split_once(' ').expect("a name and what it is");
+        assert!(!description.trim().is_empty(), "{line}");
+        let printed = stdout(tempco(folder.path()).args(["simulate", name, "--print"]));
+        assert!(printed.contains(&format!("name = \"{name}\"")), "{printed}");
+    }
+    assert!(text.lines().count() > 3, "{text}");
+}

@@ -200,3 +200,32 @@ pub fn judged(truth: &SealedTruth, diagnosis: &Diagnosis) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::example::diagnosis;
+    use firmware_sim::seal::HiddenEffect;
+
+    fn truth(hidden: &[&str]) -> SealedTruth {
+        let effect = |name: &&str| HiddenEffect { name: (*name).to_owned(), influence_ug: 9.0, times_noise: 3.0 };
+        let scenario = Scenario::preset(SCENARIO).expect("a scenario");
+        SealedTruth { blind_seed: 1, noise_floor_ug: 3.0, hidden: hidden.iter().map(effect).collect(), scenario }
+    }
+
+    #[test]
+    fn a_diagnosis_is_judged_by_what_was_hidden() {
+        let judged = |hidden: &[&str], found: &[(&str, &[&str])]| judged(&truth(hidden), &diagnosis(found));
+        assert_eq!(judged(&[], &[("aging", &[])]), "There was nothing to find.");
+        assert_eq!(judged(&["aging"], &[]), "The diagnosis did not name aging.");
+        assert_eq!(judged(&["aging"], &[("aging", &[])]), "The diagnosis was right: it named aging.");
+        assert_eq!(
+            judged(&["aging"], &[("warm-up", &["turn-on", "aging"])]),
+            "The diagnosis was right to leave open whether it is warm-up or aging."
+        );
+        assert_eq!(
+            judged(&["aging"], &[("warm-up", &[]), ("aging", &[]), ("turn-on", &[])]),
+            "The diagnosis was wrong: it named warm-up first, not aging. It also named aging, turn-on."
+        );
+    }
+}

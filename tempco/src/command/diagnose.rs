@@ -69,3 +69,25 @@ fn next(diagnosis: &Diagnosis, model: &Path, data: &str) -> String {
         _ => format!("tempco compare {model} {data}"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::example::{diagnosis, unexplained};
+
+    #[test]
+    fn what_to_type_next_follows_from_what_was_found() {
+        let next = |diagnosis: &Diagnosis| next(diagnosis, Path::new("my model.toml"), "a.csv");
+        for (diagnosis, line) in [
+            (diagnosis(&[("warm-up", &[])]), "tempco add 'my model.toml' warm-up a.csv -o better.toml"),
+            (
+                unexplained(Some("-supply_v * level_g")),
+                "tempco add 'my model.toml' --expression='-supply_v * level_g' a.csv -o better.toml",
+            ),
+            (unexplained(None), "tempco compare 'my model.toml' a.csv"),
+            (diagnosis(&[]), "tempco export 'my model.toml' -o calibration.hex"),
+        ] {
+            assert_eq!(next(&diagnosis), line);
+        }
+    }
+}

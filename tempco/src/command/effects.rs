@@ -61,3 +61,26 @@ fn explain(about: &About) -> String {
 }
 
 const EXAMPLE: &str = "supply_v * temperature_rate";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_effect_is_explained_with_its_channel_its_parameters_and_what_an_expression_may_name() {
+        let explained = |name: &str| explain(about(name).expect("an effect"));
+        for about in ALL {
+            let text = explain(about);
+            assert!(
+                text.starts_with(&format!("{} (number {})\n\n  {}\n", about.name, about.id, about.summary)),
+                "{text}"
+            );
+            assert_eq!(text.matches("\n  parameter ").count(), about.parameters.len(), "{text}");
+            assert_eq!(text.contains("An expression joins"), about.takes_program(), "{text}");
+        }
+        assert!(explained("supply-voltage").contains("\n  channel   supply_v\n"));
+        assert!(!explained("thermal-lag").contains("channel"));
+        let own = ALL.iter().copied().find(|about| about.takes_program()).map(explain).expect("an effect of one's own");
+        assert!(NAMES.iter().all(|(name, meaning, _)| own.contains(name) && own.contains(meaning)), "{own}");
+    }
+}

@@ -145,6 +145,66 @@ pub fn json(truth: &SealedTruth) -> serde_json::Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use firmware_sim::scenario::Scenario;
+
+    #[test]
+    fn an_envelope_that_does_not_open_says_what_would() {
+        let (sealed, campaign) = (Path::new("a b.sealed"), Path::new("c.csv"));
+        let text = |error: SealError| refused(sealed, campaign, &error).to_string();
+        let problem = String::new;
+        for (error, help) in [
+            (
+                SealError::OtherCampaign { sealed_for: problem(), found: problem() },
+                "c.csv is another campaign, or was changed since; name the right one:  tempco reveal 'a b.sealed' CAMPAIGN",
+            ),
+            (SealError::NotSealed { expected: "x" }, "`tempco simulate --blind` writes one beside its campaign"),
+            (SealError::OtherVersion { problem: problem() }, "open it with the version that sealed it"),
+            (SealError::Damaged, "the same scenario and seed with `tempco simulate --blind` give"),
+            (SealError::Incomplete { missing: "x" }, "the same scenario and seed with `tempco simulate --blind` give"),
+        ] {
+            let text = text(error);
+            assert!(text.contains("a b.sealed: ") && text.contains(help), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_was_hidden_is_told_apart_from_what_the_scenario_shows() {
+        let mut scenario = Scenario::preset("seed-a2").expect("a scenario");
+        scenario.name += "-blind";
+        let hidden = |name: &str| HiddenEffect { name: name.to_owned(), influence_ug: 12.34, times_noise: 2.468 };
+        let truth = |hidden: Vec<HiddenEffect>| SealedTruth {
+            blind_seed: 7,
+            noise_floor_ug: 4.997,
+            hidden,
+            scenario: scenario.clone(),
+        };
+        let words = |hidden| words(&truth(hidden), Path::new("c.csv"));
+        let none = words(Vec::new());
+        assert_eq!(
+            none,
+            "c.csv (scenario seed-a2, seed 7) hides nothing.\nThe scenario shows openly: thermal-lag, warm-up, turn-on."
+        );
+        let one = words(vec![hidden("warm-up")]);
+        let lines: Vec<&str> = one.lines().collect();
+        assert_eq!((lines[0], lines[1]), ("c.csv (scenario seed-a2, seed 7) hides 1 effect.", ""));
+        let row: Vec<&str> = lines[3].split_whitespace().collect();
+        assert_eq!(
+            row.join(" "),
+            "warm-up 12.3 2.47 bias_ug = 140, self_heating_k = 0.0, self_heating_tau_s = 900, tau_s = 600",
+            "{one}"
+        );
+        assert!(lines[4].starts_with("  share = ") && lines[4].ends_with("; noise 5.00 µg"), "{one}");
+        assert_eq!(lines[5..], ["The scenario shows openly: thermal-lag, turn-on."]);
+        let all = words(["thermal-lag", "warm-up", "turn-on"].map(hidden).to_vec());
+        assert!(all.contains("hides 3 effects.") && !all.contains("openly"), "{all}");
+        let value = json(&truth(vec![hidden("warm-up")]));
+        let expected = serde_json::json!({
+            "scenario": "seed-a2", "seed": 7, "noise_floor_ug": 4.997,
+            "hidden": [{ "effect": "warm-up", "share_ug": 12.34, "times_noise": 2.468,
+                "parameters": { "bias_ug": 140.0, "self_heating_k": 0.0, "self_heating_tau_s": 900.0, "tau_s": 600.0 } }],
+        });
+        assert_eq!(value, expected);
+    }
 
     #[test]
     fn a_parameter_has_four_digits_and_no_zeros_behind_them() {

@@ -66,6 +66,7 @@ pub fn percent(share: Share) -> String {
 mod tests {
     use super::*;
     use trainer::reproduction::contender::{Contender, FIELDS};
+    use trainer::reproduction::trial::trial;
 
     #[test]
     fn a_share_has_a_decimal_below_ten_per_cent_and_none_above_or_of_nothing() {
@@ -73,6 +74,29 @@ mod tests {
             assert_eq!(percent(Share { hits, of: 1000 }), text);
         }
         assert_eq!(percent(Share { hits: 995, of: 10_000 }), "10");
+    }
+
+    #[test]
+    fn claims_of_the_paper_come_first_and_each_speaks_of_its_own_functions() {
+        let trials = |contender| FIELDS.map(|field| trial(contender, field, 3, 1).expect("a field with extent"));
+        let trials: Vec<Trial> = Contender::ALL.into_iter().flat_map(trials).collect();
+        let text = text(&trials);
+        let (theirs, open) = text.split_once("\nWhat it leaves out\n").expect("two parts");
+        assert!(theirs.starts_with("\nWhat the paper says of the two, counted on these seeds\n"), "{text}");
+        for claim in CLAIMS {
+            let part = if claim.source.is_empty() { open } else { theirs };
+            let source = if claim.source.is_empty() { String::new() } else { format!("{}: ", claim.source) };
+            let heading = format!("  {source}{}\n", claim.statement);
+            let (_, rest) = part.split_once(&heading).unwrap_or_else(|| panic!("{heading}{text}"));
+            let functions: Vec<&str> = rest
+                .lines()
+                .take_while(|line| line.starts_with("    "))
+                .map(|line| line.split_whitespace().next().unwrap_or_default())
+                .collect();
+            let expected = if claim.function.is_empty() { vec!["Schaffer", "Rastrigin"] } else { vec![claim.function] };
+            assert_eq!(functions, expected, "{heading}{text}");
+            assert_eq!(text.matches(&heading).count(), 1, "{text}");
+        }
     }
 
     #[test]

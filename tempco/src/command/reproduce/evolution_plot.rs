@@ -131,6 +131,25 @@ mod tests {
     }
 
     #[test]
+    fn a_panel_a_domain_is_drawn_for_each_of_the_two_and_axes_are_named_at_the_edges_only() {
+        let of = |contender| FIELDS.map(|field| trainer::reproduction::trial::trial(contender, field, 5, 1));
+        let trials: Vec<Trial> =
+            Contender::ALL.into_iter().flat_map(of).collect::<Result<_, _>>().expect("fields with extent");
+        let svg = evolution("Rastrigin", &trials).expect("a picture");
+        let texts: Vec<&str> = svg.lines().map(str::trim).collect();
+        let shown = |text: &str| texts.iter().filter(|one| one.contains(text)).count();
+        for half_width in ["1", "2", "5.12", "10"] {
+            assert_eq!(shown(&format!("FA, |x| ≤ {half_width}: ")), 2, "IFA and FA, ±{half_width}");
+            assert_eq!(shown(&format!("IFA, |x| ≤ {half_width}: ")), 1, "±{half_width}");
+        }
+        assert_eq!((shown("% of seeds find 0"), shown("% of seeds find −1")), (8, 0));
+        let exactly = |text: &str| texts.iter().filter(|one| **one == text).count();
+        assert_eq!((exactly("cost"), exactly("generation")), (2, 4));
+        assert_eq!(svg.matches("<polygon ").count(), 16, "two bands a panel");
+        assert_eq!(shown("s function, 5 seeds: evolution of"), 1);
+    }
+
+    #[test]
     fn a_band_goes_there_along_its_lower_edge_and_back_along_its_upper_and_stays_in_the_picture() {
         let of = |lower: f64, upper: f64| Quartiles { lower, median: lower, upper };
         let outline = band(&[of(1.0, 9.0), of(2.0, 3.0)], 5.0);

@@ -102,3 +102,73 @@ fn shortfall(shortfall: &Shortfall) -> Value {
         "without": without,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+    use firmware_sim::scenario::Scenario;
+    use trainer::reproduction::evolution::Quartiles;
+    use trainer::reproduction::sweep::{Curve, Sweep};
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        extent: Extent,
+    }
+
+    #[test]
+    fn campaigns_are_told_row_by_row_and_method_by_method() {
+        let extent = Line::parse_from(["x", "--seeds", "5", "--restarts", "2", "--passes", "20", "--seed", "9"]).extent;
+        let points = (-40..=40).map(|step| f64::from(step) / 40.0).map(|a| [a, 2e-3 * a]).collect();
+        let mut cells = ROWS.map(|row| Some(row.ifa_bp));
+        cells[7] = Some(60.0);
+        let column = Judgement {
+            name: "raw".to_owned(),
+            cells,
+            residual_ug: 5.0,
+            sweep: Sweep { curves: vec![Curve { temperature_c: 20.0, points }] },
+            restarts_ug: vec![4.0, 6.0],
+        };
+        let shortfall = Shortfall {
+            row: ROWS[7],
+            found: 60.0,
+            perfect: 50.0,
+            campaigns: Quartiles { lower: 1.0, median: 2.0, upper: 3.0 },
+            without: Some(("the rig".to_owned(), 3.0)),
+        };
+        let scenario = Scenario::preset("seed-a2").expect("a scenario");
+        let judged = Judged {
+            scenario,
+            columns: vec![column],
+            shortfalls: vec![shortfall],
+            trained_on: Some("seed".to_owned()),
+        };
+        let value = json(&extent, &[], &[judged], &["a.csv".into()]);
+        for (key, number) in [("seed", 9), ("seeds", 5), ("restarts", 2), ("passes", 20)] {
+            assert_eq!(value[key], number, "{key}");
+        }
+        assert_eq!((&value["rates"], &value["claims"], &value["files"]), (&json!([]), &json!([]), &json!(["a.csv"])));
+        let campaign = &value["campaigns"][0];
+        assert_eq!((&campaign["campaign"], &campaign["trained_on"]), (&json!("seed-a2"), &json!("seed")));
+        assert_eq!(campaign["rows"].as_array().map(Vec::len), Some(ROWS.len()));
+        let row = json!({
+            "table": 2, "data_set": 1, "run": "full-test-1", "figure": "bias variation, µg",
+            "paper": { "raw": 39_152.0, "FA-BP": 89.431, "IFA-BP": 32.967 }, "measured": { "raw": 60.0 },
+        });
+        assert_eq!(campaign["rows"][7], row);
+        let method = &campaign["methods"][0];
+        assert_eq!(
+            (&method["method"], &method["residual_ug"], &method["restarts_ug"]),
+            (&json!("raw"), &json!(5.0), &json!([4.0, 6.0]))
+        );
+        let near = |key: &str, value: f64| (method[key].as_f64().expect("a number") / value - 1.0).abs() < 1e-9;
+        assert!(near("at_half_g_ug", 1e3) && near("worst_slope_ppm", 2e3), "{method}");
+        let above = json!({
+            "table": 2, "data_set": 1, "figure": "bias variation, µg", "found": 60.0, "paper": 32.967,
+            "perfect_static_map": 50.0, "perfect_static_map_quartiles": [1.0, 2.0, 3.0],
+            "even_the_perfect_map_is_above": true, "without": { "what": "the rig", "leaves": 3.0 },
+        });
+        assert_eq!(campaign["above_the_paper"], json!([above]));
+    }
+}

@@ -38,9 +38,9 @@ const fn colour(contender: Contender) -> RGBColor {
 /// So far apart stand the bars of one domain, in units of the distance of domains.
 const APART: f64 = 0.05;
 
-/// How far a search's bars stand from the middle of their domain.
-fn shift(index: usize) -> f64 {
-    (index as f64 - (Contender::ALL.len() - 1) as f64 / 2.0) * APART
+/// Where the bars of a domain stand that belong to a search.
+fn across(position: usize, search: usize) -> f64 {
+    position as f64 + (search as f64 - (Contender::ALL.len() - 1) as f64 / 2.0) * APART
 }
 
 fn draw(area: &Area, function: &str, trials: &[&Trial]) -> Result<(), DrawError> {
@@ -67,10 +67,9 @@ fn draw(area: &Area, function: &str, trials: &[&Trial]) -> Result<(), DrawError>
         .y_desc("seeds that find it");
     grid.draw()?;
     for (index, contender) in Contender::ALL.into_iter().enumerate() {
-        let shift = shift(index);
         let (line, dot) = (colour(contender).stroke_width(2), colour(contender).filled());
         let points: Vec<(f64, &Trial)> =
-            of(contender).enumerate().map(|(position, trial)| (position as f64 + shift, *trial)).collect();
+            of(contender).enumerate().map(|(position, trial)| (across(position, index), *trial)).collect();
         chart.draw_series(LineSeries::new(points.iter().map(|(x, trial)| (*x, trial.found().percent())), line))?;
         chart.draw_series(points.iter().map(|(x, trial)| {
             PathElement::new(trial.found().interval_percent().map(|end| (*x, end)).to_vec(), line)
@@ -88,9 +87,12 @@ mod tests {
 
     #[test]
     fn the_bars_of_a_domain_stand_side_by_side_around_its_middle() {
-        let shifts: Vec<f64> = (0..Contender::ALL.len()).map(shift).collect();
-        assert!(shifts.windows(2).all(|pair| (pair[1] - pair[0] - APART).abs() < 1e-12), "{shifts:?}");
-        assert!(shifts.iter().sum::<f64>().abs() < 1e-12, "{shifts:?}");
+        for domain in 0..4 {
+            let bars: Vec<f64> = (0..Contender::ALL.len()).map(|search| across(domain, search)).collect();
+            assert!(bars.windows(2).all(|pair| (pair[1] - pair[0] - APART).abs() < 1e-12), "{bars:?}");
+            let middle = bars.iter().sum::<f64>() / bars.len() as f64;
+            assert!((middle - domain as f64).abs() < 1e-12, "{bars:?}");
+        }
     }
 
     #[test]

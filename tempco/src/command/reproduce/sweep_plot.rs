@@ -136,13 +136,43 @@ mod tests {
     }
 
     #[test]
+    fn every_method_but_the_perfect_one_has_its_line_in_both_panels() {
+        let column = |name: &str, slope: f64| {
+            let points = (-40..=40).map(|step| f64::from(step) / 40.0).map(|a| [a, (slope - 1.0) * a]).collect();
+            let curves = vec![Curve { temperature_c: SHOWN_C, points }];
+            let sweep = trainer::reproduction::sweep::Sweep { curves };
+            let cells = [None; trainer::reproduction::paper::ROWS.len()];
+            Judgement { name: name.to_owned(), cells, residual_ug: 1.0, sweep, restarts_ug: Vec::new() }
+        };
+        let scenario = firmware_sim::scenario::Scenario::preset("seed").expect("a scenario");
+        // What is off by the limit is perfect still.
+        let mut limit = column("limit", 1.0);
+        limit.sweep.curves[0].points = vec![[0.0, 0.0], [1.0, PERFECT_PPM * 1e-6]];
+        assert_eq!(limit.sweep.worst_slope_ppm(), PERFECT_PPM);
+        let columns = vec![column("raw", 1.1), column("perfect map", 1.0), limit, column("trained", 1.01)];
+        let svg = sweep(&[Judged { scenario, columns, shortfalls: Vec::new(), trained_on: None }]).expect("a picture");
+        let texts: Vec<&str> = svg.lines().map(str::trim).collect();
+        let shown = |text: &str| texts.iter().filter(|one| **one == text).count();
+        assert_eq!((shown("raw"), shown("perfect map"), shown("limit"), shown("trained")), (1, 0, 0, 1));
+        assert_eq!((shown("applied acceleration, g"), shown("reading, g"), shown("residual")), (2, 1, 1));
+        assert_eq!((shown("1 mg"), shown("Reading at 20 °C")), (1, 1));
+        // A line in each panel and a mark in the legend.
+        for colour in COLOURS.iter().take(2) {
+            let RGBColor(red, green, blue) = colour;
+            let hex = format!("stroke=\"#{red:02X}{green:02X}{blue:02X}\"");
+            assert_eq!(svg.matches(&hex).count(), 3, "{hex}");
+        }
+        assert!(sweep(&[]).is_err());
+    }
+
+    #[test]
     fn the_axes_are_labelled_in_usual_units() {
         for (value_ug, text) in
             [(0.1, "0.1 µg"), (1.0, "1 µg"), (100.0, "100 µg"), (1e3, "1 mg"), (1e5, "100 mg"), (1e6, "1 g")]
         {
             assert_eq!(size(&value_ug), text);
         }
-        for (value_g, text) in [(0.0, "0"), (1e-12, "0"), (0.2, "+0.2"), (-1.0, "−1.0")] {
+        for (value_g, text) in [(0.0, "0"), (1e-12, "0"), (1e-9, "+0.0"), (0.2, "+0.2"), (-1.0, "−1.0")] {
             assert_eq!(g(&value_g), text);
         }
     }
