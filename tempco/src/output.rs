@@ -299,6 +299,62 @@ mod tests {
     }
 
     #[test]
+    fn a_key_gets_a_name_that_nobody_has_or_none() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = TempDir::new().expect("a folder");
+        let path = folder.path().join("factory.key");
+        write_secret(&path, b"first").expect("a free name");
+        for write in [write_secret, write_new] {
+            write(&path, b"second").expect_err("taken");
+            assert_eq!(fs::read(&path).expect("readable"), b"first");
+        }
+        assert_eq!(fs::metadata(&path).expect("there").permissions().mode() & 0o777, 0o600);
+        // A link that leads nowhere would lead there then.
+        let link = folder.path().join("link.key");
+        symlink("elsewhere", &link).expect("a link");
+        write_secret(&link, b"third").expect_err("taken");
+        assert_eq!(names(folder.path()), ["factory.key", "link.key"]);
+    }
+
+    #[test]
+    fn what_killed_processes_left_goes_and_nothing_else() {
+        let folder = TempDir::new().expect("a folder");
+        let file = |name: &str| fs::File::create(folder.path().join(name)).expect("a file");
+        let being_written = file(".tempco-12345678.part");
+        being_written.try_lock().expect("a lock");
+        let others = [".tempco-abc.part", ".tempco-abcdefg-.part", ".tempco-abcdefgh.toml", "tempco-abcdefgh.part"];
+        for name in others.iter().chain(&[".tempco-abcdEFG8.part"]) {
+            drop(file(name));
+        }
+        fs::create_dir(folder.path().join(".tempco-aaaaaaaa.part")).expect("a folder");
+        model(&folder.path().join("model.toml"), false).check().expect("a free name");
+        let mut expected = [&others[..], &[".tempco-12345678.part", ".tempco-aaaaaaaa.part"]].concat();
+        expected.sort_unstable();
+        assert_eq!(names(folder.path()), expected);
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_said_when_it_is_looked_at() {
+        let folder = TempDir::new().expect("a folder");
+        let refused = |path: &Path| model(path, true).check().expect_err("no place").to_string();
+        let text = refused(&folder.path().join("nowhere/model.toml"));
+        assert!(text.contains("its folder is not there"), "{text}");
+        assert!(refused(folder.path()).contains("this is a folder"));
+        let taken = folder.path().join("notes.txt");
+        fs::write(&taken, "mine").expect("written");
+        fs::write(folder.path().join("notes.toml"), "mine too").expect("written");
+        let text = model(&taken, false).check().expect_err("somebody's").to_string();
+        let free = folder.path().join("notes-2.toml");
+        assert!(text.contains(&format!("choose another name: -o {}, or add --force if ", free.display())), "{text}");
+        let text = Output::in_folder(&taken, Kind::Model, "--output", Force::default()).check();
+        assert!(text.expect_err("somebody's").to_string().contains("choose another folder: --output FOLDER, or add"));
+        let text = Output::own(&taken, Kind::Model).check().expect_err("somebody's").to_string();
+        assert!(text.contains("move it to another folder") && !text.contains("--force"), "{text}");
+        model(Path::new("/dev/null"), false).check().expect("a device takes what it is given");
+        model(Path::new("/dev/null"), false).write(OURS).expect("a device takes what it is given");
+    }
+
+    #[test]
     fn a_link_stays_and_the_file_that_it_names_is_replaced() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = TempDir::new().expect("a folder");

@@ -320,3 +320,34 @@ fn every_built_in_scenario_is_listed_with_what_it_is() {
     }
     assert!(text.lines().count() > 3, "{text}");
 }
+
+#[test]
+fn no_foreign_name_moves_a_cursor_whether_it_is_answered_remarked_or_refused() {
+    const NASTY: &str = "a\u{1b}[31m\u{202e}b";
+    let folder = TempDir::new().expect("a folder");
+    let table = fs::read_to_string(SMALL).expect("checked in");
+    fs::write(folder.path().join("nasty.csv"), table.replacen("delta_f_hz", NASTY, 1)).expect("written");
+    let seen = |code: i32, arguments: &[&str]| {
+        let output = tempco(folder.path()).args(arguments).assert().code(code).get_output().clone();
+        let text = String::from_utf8([output.stdout, output.stderr].concat()).expect("text");
+        // The parser's and the failures' own colours are not asked for.
+        assert!(!text.contains('\u{1b}') && !text.contains('\u{202e}'), "{arguments:?}: {text:?}");
+        text
+    };
+    let map = format!("delta_f_hz={NASTY}");
+    seen(0, &["train", "nasty.csv", "--map", &map, "--restarts", "1", "-o", "m.toml"]);
+    assert!(seen(0, &["inspect", "m.toml"]).contains("b\""), "the model's text");
+    // A remark: how the model's campaign was read.
+    assert!(seen(0, &["compare", "m.toml", "nasty.csv"]).contains("Read as the model's campaign was"));
+    for arguments in [["inspect", NASTY], ["effects", NASTY], ["train", NASTY], ["simulate", NASTY]] {
+        assert!(seen(2, &arguments).contains("\\u001b"), "{arguments:?}");
+    }
+    assert!(seen(2, &["train", "nasty.csv", "--map", NASTY]).contains("\\u001b"));
+    // In what helps, too: it names the file once more.
+    let file = format!("{NASTY}.csv");
+    fs::write(folder.path().join(&file), b"time_s,\xFF\xFE\n").expect("written");
+    let text = seen(2, &["train", &file]);
+    let (error, help) = text.split_once("help:").expect("a way out");
+    assert!(error.contains("\\u001b") && help.contains("\\u001b"), "{text}");
+    assert!(seen(2, &["train", "--map"]).contains("error:"));
+}
