@@ -62,9 +62,17 @@ fn a_model_goes_from_training_over_export_to_a_verified_instrument() {
     assert!(text.contains("for address 0x080c0000"), "{text}");
     let text = stdout(tempco(folder.path()).args(["inspect", "calibration.hex"]));
     assert!(text.contains("A device would take it."), "{text}");
-    let text = stdout(tempco(folder.path()).args(["verify", "model.toml", SMALL]));
+    let verify = ["verify", "model.toml", SMALL];
+    let text = stdout(tempco(folder.path()).args(verify));
     let (identical, all) = text.split_once(" of ").expect("two counts");
     assert!(all.starts_with(identical) && all.contains("identical in every bit"), "{text}");
+    // At least as fast as the whole command, and not faster than any line.
+    #[expect(clippy::disallowed_methods, reason = "how fast it is takes a clock")]
+    let begun = std::time::Instant::now();
+    let speed = stderr_of(tempco(folder.path()).args(verify), 0);
+    let slowest_per_s = identical.parse::<f64>().expect("a count") / begun.elapsed().as_secs_f64();
+    let per_s: f64 = speed.split(' ').next().and_then(|text| text.parse().ok()).unwrap_or_else(|| panic!("{speed}"));
+    assert!((slowest_per_s - 1.0..1e9).contains(&per_s), "{speed}, at least {slowest_per_s}");
 }
 
 /// The small campaign with a supply column, and with an effect that only the two columns together explain.
@@ -350,4 +358,28 @@ fn no_foreign_name_moves_a_cursor_whether_it_is_answered_remarked_or_refused() {
     let (error, help) = text.split_once("help:").expect("a way out");
     assert!(error.contains("\\u001b") && help.contains("\\u001b"), "{text}");
     assert!(seen(2, &["train", "--map"]).contains("error:"));
+}
+
+#[test]
+fn every_run_may_teach_and_no_seed_is_too_large_for_the_files_that_name_it() {
+    let folder = TempDir::new().expect("a folder");
+    let text = stdout(tempco(folder.path()).args(["train", SMALL, "--hold-out", "none", "--restarts", "1", "--json"]));
+    let told: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let runs = told["runs"].as_array().expect("runs");
+    assert!(runs.len() == 7 && runs.iter().all(|run| run["held_out"] == false), "{text}");
+    for verb in [&["simulate", SMALL_SCENARIO][..], &["demo"], &["train", SMALL]] {
+        let text = stderr_of(tempco(folder.path()).args(verb).args(["--seed", "9223372036854775808"]), 2);
+        assert!(text.contains("--seed <SEED>") && text.contains("9223372036854775807"), "{text}");
+    }
+}
+
+#[test]
+fn a_reference_of_another_name_and_unit_is_read_as_that() {
+    let folder = TempDir::new().expect("a folder");
+    let table = fs::read_to_string(SMALL).expect("checked in").replacen("reference_g", "load", 1);
+    fs::write(folder.path().join("load.csv"), table).expect("written");
+    let options = ["--reference", "load*9.80665", "--reference-unit", "m/s2", "--restarts", "1", "-o", "model.toml"];
+    stdout(tempco(folder.path()).args(["train", "load.csv"]).args(options));
+    let model = fs::read_to_string(folder.path().join("model.toml")).expect("written");
+    assert!(model.contains("reference = \"m/s2\"") && model.contains("load*9.80665"), "{model}");
 }

@@ -201,7 +201,8 @@ mod tests {
 
     #[test]
     fn what_only_looks_alike_is_not_tempcos() {
-        let foreign: [&[u8]; 10] = [
+        let foreign: [&[u8]; 11] = [
+            b"format = 1\n",
             b"run,kind,time_s,temperature_c,delta_f_hz,reference_g\nfull-1,full,1,20.000000,76.000000,0.000000000\n",
             b"format = 1\n[provenance]\nmade_by = 'hand'\n",
             b"TPC",
@@ -217,5 +218,43 @@ mod tests {
             assert_eq!(kind(bytes), None, "{}", String::from_utf8_lossy(bytes));
         }
         assert_eq!(kind(&[0xFF; 8192]), Some(Kind::Flash));
+    }
+
+    #[test]
+    fn a_model_has_all_of_a_models_parts() {
+        let parts = [
+            "format = 1\n",
+            "[provenance]\nmade_by = 'hand'\n",
+            "[scaling]\noutput_g = 1\n",
+            "[network]\noutput_bias = 1\n",
+        ];
+        assert_eq!(kind(parts.concat().as_bytes()), Some(Kind::Model));
+        for missing in 0..parts.len() {
+            let mut others = parts.to_vec();
+            others.remove(missing);
+            assert_eq!(kind(others.concat().as_bytes()), None, "without {}", parts[missing]);
+        }
+        assert_eq!(kind(parts.concat().replace("format = 1", "format = 'x'").as_bytes()), None);
+    }
+
+    #[test]
+    fn an_identity_is_one_to_the_last_byte_as_it_is_or_where_the_image_looks_for_it() {
+        let record = firmware_core::IdentityRecord::new("SN-1").to_bytes();
+        assert_eq!(kind(&record), Some(Kind::Identity));
+        assert_eq!(kind(&vec![0; record.len()]), None);
+        assert_eq!(kind(&record[1..]), None);
+        let ((identity, _), (calibration, length)) =
+            (region::identity().expect("a region"), region::calibration().expect("a region"));
+        let hex = |pieces: &[(u32, &[u8])]| kind(crate::hex::text(pieces).expect("HEX").as_bytes());
+        assert_eq!(hex(&[(identity, &record)]), Some(Kind::IdentityHex));
+        for foreign in [
+            &[(identity, &[0; 64][..])][..],
+            &[(identity + 16, &record)],
+            &[(calibration, &record)],
+            &[(identity, &record), (calibration, b"else")],
+            &[(calibration, b"else"), (calibration + length, b"behind")],
+        ] {
+            assert_eq!(hex(foreign), None, "{foreign:?}");
+        }
     }
 }
