@@ -150,6 +150,12 @@ mod tests {
     }
 
     #[test]
+    fn each_line_is_drawn_of_its_own_cost() {
+        let generation = Generation { best: 1.5, mean: 2.5 };
+        assert_eq!((best_of(&generation), mean_of(&generation)), (1.5, 2.5));
+    }
+
+    #[test]
     fn a_band_goes_there_along_its_lower_edge_and_back_along_its_upper_and_stays_in_the_picture() {
         let of = |lower: f64, upper: f64| Quartiles { lower, median: lower, upper };
         let outline = band(&[of(1.0, 9.0), of(2.0, 3.0)], 5.0);
