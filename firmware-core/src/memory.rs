@@ -66,16 +66,19 @@ impl<R: Real> State<R> {
         }
     }
 
-    /// Takes the signal's `increment` over a pause of `dt_s`, during which nobody looked. What moves a
-    /// sensor moves it and then waits, chamber and turntable alike: the change counts from the beginning.
+    /// Takes the signal's `increment` over a pause of `dt_s`, during which nobody looked. As much of it as would have come
+    /// had the signal gone on as before comes at that pace: a ramp does not stop because a table turns. The rest moved and
+    /// then waited, as chamber and turntable do: it counts from the beginning.
     pub fn pause(&mut self, memory: &Memory<R>, increment: R, dt_s: R) {
-        match memory {
-            Memory::Lag { .. } => {
-                self.departure.add(increment);
-                self.advance(memory, R::ZERO, dt_s);
+        let steady = match *memory {
+            // A lag's departure over its time constant is the signal's rate, smoothed over just the time that matters.
+            Memory::Lag { tau_s } if tau_s > R::ZERO => {
+                between_zero_and(increment, self.departure.value / tau_s * dt_s)
             }
-            Memory::None | Memory::Play { .. } => self.advance(memory, increment, dt_s),
-        }
+            Memory::Lag { .. } | Memory::None | Memory::Play { .. } => increment,
+        };
+        self.departure.add(increment - steady);
+        self.advance(memory, steady, dt_s);
     }
 
     /// Exact for a signal that runs straight from one sample to the next.
@@ -98,6 +101,11 @@ impl<R: Real> State<R> {
         self.departure = Sum { value: wanted.between(-radius, radius), ..Sum::ZERO };
         self.settled = self.settled || !(wanted > -radius && wanted < radius);
     }
+}
+
+/// The value, or the nearer of zero and `end` where it is not between them.
+fn between_zero_and<R: Real>(end: R, value: R) -> R {
+    if end < R::ZERO { value.between(end, R::ZERO) } else { value.between(R::ZERO, end) }
 }
 
 /// A sum to which steps below its last place still count (Kahan).
@@ -145,6 +153,32 @@ mod tests {
         let mut state = State::REST;
         state.pause(&play, 20.0, 1200.0);
         assert!((state.departure() - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_ramp_goes_on_through_a_pause_and_what_it_does_not_explain_counts_from_its_beginning() {
+        let lag = Memory::Lag { tau_s: 46.5_f64 };
+        for rate in [0.02, -0.02] {
+            let mut state = State::REST;
+            let mut without_a_pause = state;
+            for _ in 0..100 {
+                state.advance(&lag, 10.0 * rate, 10.0);
+            }
+            without_a_pause.clone_from(&state);
+            without_a_pause.advance(&lag, 40.0 * rate, 40.0);
+            let ramp = state;
+            state.pause(&lag, 40.0 * rate, 40.0);
+            assert!((state.departure() - without_a_pause.departure()).abs() < 1e-6, "{rate}");
+            // The ramp turned: nothing of what came is its own.
+            let mut turned = ramp;
+            turned.pause(&lag, -5.0 * rate, 40.0);
+            let kept = libm::exp(-40.0 / 46.5);
+            assert!((turned.departure() - (ramp.departure() - 5.0 * rate) * kept).abs() < 1e-12, "{rate}");
+            // And a step of the chamber beside it.
+            let mut stepped = ramp;
+            stepped.pause(&lag, 40.0 * rate + 100.0 * rate, 40.0);
+            assert!((stepped.departure() - without_a_pause.departure() - 100.0 * rate * kept).abs() < 1e-6, "{rate}");
+        }
     }
 
     #[test]
