@@ -13,46 +13,111 @@ const SAME_STEPS: f64 = 4.0;
 /// A smaller share of neighbours meets at one reference by chance. Their inputs differ, and so does what
 /// the model misses of them. And a smaller share is written again by chance: counters count in steps.
 const LEAST_SHARE: f64 = 0.1;
+/// Of the signal alone a larger share is the same again by chance: noise of less than a step of a counter stands still
+/// more often than not only where nothing new was read.
+const MOST_SAME_SIGNAL: f64 = 0.5;
 /// Median of the magnitude of a normal value of mean zero, as a fraction of its σ.
 const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 
 /// Standard deviation of the noise from one sample to the next, g.
 ///
-/// From differences of neighbours within a state, so that whatever a model misses cancels as long as
-/// it is slower than the sampling. The median instead of the mean square, so that the steps at the
-/// beginning of a state don't count; nor do rows that were written again before there was anything new to read.
-/// `None` where neighbours share a state by chance at most.
+/// From pseudo-residuals (Gasser, Sroka & Jennen-Steinmetz, Biometrika 1986, 73, 625): what a sample departs from the
+/// straight line through its neighbours within a state, so that whatever a model misses cancels as long as it is straight
+/// over three samples; from differences of neighbours where hardly any three share a state. The median instead of the mean
+/// square, so that the steps at the beginning of a state don't count; nor do rows that were written again before there was
+/// anything new to read. `None` where neighbours share a state by chance at most.
 #[must_use]
 pub fn sample_sigma_g<'a>(runs: impl IntoIterator<Item = (&'a Run, &'a RunResiduals)>) -> Option<f64> {
-    let (mut both, mut again): (Vec<[f64; 2]>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (run, residuals) in runs {
-        let step = |(rows, pair): (&[Row], &[f64])| {
-            [rows[1].reference_g - rows[0].reference_g, pair[1] - pair[0]].map(f64::abs)
-        };
-        for (rows, pair) in run.rows.windows(2).zip(residuals.windows(2)) {
-            let side = if is_written_again(rows) { &mut again } else { &mut both };
-            side.push(step((rows, pair)));
-        }
-        (low, high) =
-            run.rows.iter().fold((low, high), |(low, high), row| (low.min(row.reference_g), high.max(row.reference_g)));
-    }
-    if (again.len() as f64) < LEAST_SHARE * (again.len() + both.len()) as f64 {
-        both.append(&mut again);
-    }
-    let typical = normal_sigma(both.iter().map(|[_, step]| *step).collect());
-    let same = (SAME_STATE * (high / 2.0 - low / 2.0)).max(SAME_STEPS * typical);
-    let steps: Vec<f64> = both.iter().filter(|[apart, _]| *apart <= same).map(|[_, step]| *step).collect();
-    if (steps.len() as f64) < LEAST_SHARE * both.len() as f64 || steps.is_empty() {
+    let runs: Vec<(&Run, &RunResiduals)> = runs.into_iter().collect();
+    let rows: Vec<&[Row]> = runs.iter().map(|(run, _)| run.rows.as_slice()).collect();
+    let once = written_once(&rows);
+    let points: Vec<Vec<Point>> = runs
+        .iter()
+        .zip(once)
+        .map(|((run, residuals), rows)| {
+            rows.into_iter().map(|row| Point::new(&run.rows[row], residuals[row])).collect()
+        })
+        .collect();
+    let pairs = || points.iter().flat_map(|run| run.windows(2));
+    let count = pairs().count() as f64;
+    let same_g = same_state_g(&points);
+    let is_one_state = |neighbours: &&[Point]| neighbours.windows(2).all(|pair| pair[0].apart_g(&pair[1]) <= same_g);
+    let steps: Vec<f64> = pairs().filter(is_one_state).map(|pair| pair[0].step_g(&pair[1]).abs()).collect();
+    if (steps.len() as f64) < LEAST_SHARE * count || steps.is_empty() {
         return None;
     }
-    Some(normal_sigma(steps) / 2.0_f64.sqrt())
+    let threes = points.iter().flat_map(|run| run.windows(3)).filter(is_one_state);
+    let pseudo_residuals: Vec<f64> = threes.map(pseudo_residual_g).map(f64::abs).collect();
+    if (pseudo_residuals.len() as f64) < LEAST_SHARE * count {
+        return Some(normal_sigma(steps) / 2.0_f64.sqrt());
+    }
+    Some(normal_sigma(pseudo_residuals))
 }
 
-/// Whether signal and thermometer are the same to the last digit: a logger was faster than the sensor.
-fn is_written_again(rows: &[Row]) -> bool {
-    let [before, here] = [&rows[0].sample, &rows[1].sample];
-    (before.delta_f_uhz, before.temperature_uc) == (here.delta_f_uhz, here.temperature_uc)
+/// One residual, and where it stands.
+struct Point {
+    time_us: u64,
+    reference_g: f64,
+    residual_g: f64,
+}
+
+impl Point {
+    fn new(row: &Row, residual_g: f64) -> Self {
+        Self { time_us: row.sample.time_us, reference_g: row.reference_g, residual_g }
+    }
+
+    fn apart_g(&self, next: &Self) -> f64 {
+        (next.reference_g - self.reference_g).abs()
+    }
+
+    fn step_g(&self, next: &Self) -> f64 {
+        next.residual_g - self.residual_g
+    }
+}
+
+/// How far references of one state may lie apart, g.
+fn same_state_g(points: &[Vec<Point>]) -> f64 {
+    let references = || points.iter().flatten().map(|point| point.reference_g);
+    let half_span_g =
+        references().fold(f64::NEG_INFINITY, f64::max) / 2.0 - references().fold(f64::INFINITY, f64::min) / 2.0;
+    let steps = points.iter().flat_map(|run| run.windows(2)).map(|pair| pair[0].step_g(&pair[1]).abs());
+    (SAME_STATE * half_span_g).max(SAME_STEPS * normal_sigma(steps.collect()))
+}
+
+/// What the middle of three departs from the straight line through the others, with the variance of one of them.
+fn pseudo_residual_g(three: &[Point]) -> f64 {
+    let [before, here, after] = [0, 1, 2].map(|index| &three[index]);
+    let span_us = after.time_us.saturating_sub(before.time_us);
+    let after_share =
+        if span_us == 0 { 0.5 } else { here.time_us.saturating_sub(before.time_us) as f64 / span_us as f64 };
+    let before_share = 1.0 - after_share;
+    let departure_g = before_share * before.residual_g + after_share * after.residual_g - here.residual_g;
+    departure_g / (1.0 + before_share.powi(2) + after_share.powi(2)).sqrt()
+}
+
+/// Of each run the rows at which something new was read, in order: a logger may be faster than the sensor.
+pub fn written_once(runs: &[&[Row]]) -> Vec<Vec<usize>> {
+    let (mut pairs, mut same_signal, mut same) = (0.0, 0.0, 0.0);
+    for pair in runs.iter().flat_map(|rows| rows.windows(2)) {
+        pairs += 1.0;
+        same_signal += f64::from(u8::from(is_same_signal(pair)));
+        same += f64::from(u8::from(is_same_signal(pair) && is_same_temperature(pair)));
+    }
+    let is_again = |pair: &[Row]| {
+        is_same_signal(pair)
+            && (same_signal > MOST_SAME_SIGNAL * pairs || same >= LEAST_SHARE * pairs && is_same_temperature(pair))
+    };
+    let once = |rows: &[Row]| (0..rows.len()).filter(|&row| row == 0 || !is_again(&rows[row - 1..=row])).collect();
+    runs.iter().map(|rows| once(rows)).collect()
+}
+
+/// Whether the signal is the same to the last digit.
+fn is_same_signal(pair: &[Row]) -> bool {
+    pair[0].sample.delta_f_uhz == pair[1].sample.delta_f_uhz
+}
+
+fn is_same_temperature(pair: &[Row]) -> bool {
+    pair[0].sample.temperature_uc == pair[1].sample.temperature_uc
 }
 
 /// Standard deviation of normal values by the median of their magnitudes; 0 for none.
@@ -166,6 +231,51 @@ mod tests {
         let residuals: RunResiduals = (0..100).map(|k| f64::from(k % 2) * 1e-3).collect();
         assert_eq!(sample_sigma_g([(&run(98), &residuals)]), None);
         assert!(sample_sigma_g([(&run(10), &residuals)]).is_some());
+    }
+
+    #[test]
+    fn a_slope_is_no_noise_and_neither_is_one_at_uneven_times() {
+        let noise = |k: u64| (k * 37 % 101) as f64 * 1e-7;
+        let even = |k: u64| k;
+        let uneven = |k: u64| k + k / 7 * 5;
+        for second in [&even as &dyn Fn(u64) -> u64, &uneven] {
+            let run = Run {
+                name: "ramp".to_owned(),
+                kind: String::new(),
+                source: PathBuf::new(),
+                rows: (0..400).map(|k| row(second(k), 1.0)).collect(),
+            };
+            let sigma = |slope: f64| {
+                let residuals: RunResiduals = (0..400).map(|k| noise(k) + slope * second(k) as f64).collect();
+                sample_sigma_g([(&run, &residuals)]).expect("neighbours share a state")
+            };
+            let (still, ramp) = (sigma(0.0), sigma(1e-4));
+            assert!(still > 1e-6 && (ramp / still - 1.0).abs() < 1e-6, "{still} {ramp}");
+        }
+    }
+
+    #[test]
+    fn a_meter_that_is_slower_than_the_thermometer_is_read_once() {
+        // Every fourth row is new; the thermometer, and the residual with it, is new in each.
+        let noise = |k: u64| (k * 37 % 101) as f64 * 1e-7;
+        let rows: Vec<Row> = (0..400)
+            .map(|k| {
+                let sample = Sample::from_difference(k * 1_000_000, (k / 4 * 37 % 101) as i64, (k % 7) as i32);
+                Row { sample, reference_g: 1.0, reference_sigma_g: None }
+            })
+            .collect();
+        let once = written_once(&[&rows]);
+        assert_eq!(once[0], (0..100).map(|k| 4 * k).collect::<Vec<_>>());
+        let run = Run { name: "slow".to_owned(), kind: String::new(), source: PathBuf::new(), rows };
+        let residuals: RunResiduals = (0..400).map(|k| noise(k / 4) + 1e-10 * (k % 7) as f64).collect();
+        let sigma = sample_sigma_g([(&run, &residuals)]).unwrap();
+        assert!(sigma > 1e-6, "{sigma}");
+        // A counter that stands still by chance, now and then, is read each time.
+        let steps: Vec<Row> = (0..400).map(|k| row(k, (k * 37 % 101 / 40) as f64)).collect();
+        let mut counter = steps;
+        counter.iter_mut().for_each(|row| row.sample.delta_f_uhz = row.reference_g as i64);
+        counter.iter_mut().enumerate().for_each(|(k, row)| row.sample.temperature_uc = k as i32);
+        assert_eq!(written_once(&[&counter])[0].len(), 400);
     }
 
     fn row(second: u64, reference_g: f64) -> Row {

@@ -67,9 +67,10 @@ fn the_headline_is_of_the_runs_that_were_not_seen_and_each_run_has_its_own() {
 
 #[test]
 fn the_noise_floor_is_that_of_neighbouring_samples() {
+    // Each is 10 µg from the straight line through its neighbours, which has 3/2 of a sample's variance.
     let campaign = campaign(vec![run("noise", "static", 1, alternating(5.0, 100))]);
     let comparison = compare(&line(), &campaign).expect("a comparison");
-    assert!(near(comparison.noise_floor_ug.expect("one state"), 10.0 / 0.674_49 / 2.0_f64.sqrt()));
+    assert!(near(comparison.noise_floor_ug.expect("one state"), 10.0 / 0.674_49 / 1.5_f64.sqrt()));
 }
 
 #[test]
