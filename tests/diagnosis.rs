@@ -92,6 +92,34 @@ fn what_is_hidden_is_named_and_nothing_else() {
     }
 }
 
+/// A static map bends after what it is trained with, and the leftovers look like other effects.
+#[test]
+fn an_effect_a_hundred_times_the_noise_is_named_alone_and_the_residual_told_is_the_comparisons() {
+    for (seed, name) in (40..).zip(["thermal-lag", "warm-up", "thermal-gradient"]) {
+        let campaign = measured(&[name], 100.0, seed);
+        let before = model(&campaign);
+        let diagnosis = diagnose(&before, &campaign, &Quiet).expect("a diagnosis");
+        assert_eq!(named(&diagnosis), [name], "{diagnosis:#?}");
+        let compared = trainer::compare::compare(&before, &campaign).expect("a comparison").residual_ug;
+        assert!((diagnosis.residual_ug / compared - 1.0).abs() < 1e-3, "{} {compared}", diagnosis.residual_ug);
+        assert!(diagnosis.residual_after_ug < 0.05 * diagnosis.residual_ug, "{name}: {diagnosis:#?}");
+    }
+}
+
+#[test]
+fn what_is_foretold_of_a_large_lag_is_what_training_with_it_leaves_and_then_nothing_is_missing() {
+    let campaign = measured(&["thermal-lag"], 100.0, 40);
+    let foretold = diagnose(&model(&campaign), &campaign, &Quiet).expect("a diagnosis").residual_after_ug;
+    let split = campaign.split(&HoldOut::LastOfEachKind).expect("a split");
+    let effects = vec![EffectChoice::named("thermal-lag")];
+    let settings = TrainSettings { restarts: 4, effects, ..TrainSettings::new(1) };
+    let after = train(&campaign, &split, &settings, &Quiet).expect("a model").model;
+    let trained = trainer::compare::compare(&after, &campaign).expect("a comparison").residual_ug;
+    assert!((foretold / trained - 1.0).abs() < 0.25, "{foretold} {trained}");
+    let again = diagnose(&after, &campaign, &Quiet).expect("a diagnosis");
+    assert_eq!(again.verdict, Verdict::NothingMissing, "{again:#?}");
+}
+
 #[test]
 fn two_effects_are_both_named() {
     let diagnosis = diagnosis(&["thermal-lag", "supply-voltage"], 5.0, 5);

@@ -36,6 +36,7 @@ pub use error::DiagnoseError;
 pub use thresholds::LEAST_DELTA_BIC;
 
 use crate::campaign::Campaign;
+use crate::compare::unseen;
 use crate::effect_choice::EffectChoice;
 use crate::model::Model;
 use crate::progress::Progress;
@@ -49,7 +50,8 @@ use problem::yardstick;
 /// [`DiagnoseError`] says what is missing.
 pub fn diagnose(model: &Model, campaign: &Campaign, progress: &dyn Progress) -> Result<Diagnosis, DiagnoseError> {
     let yardstick = yardstick(model, campaign)?;
-    let diagnosis = verdict::judge(model, &yardstick.campaign(campaign), &yardstick, progress)?;
+    let unseen: Vec<bool> = campaign.runs.iter().map(|run| unseen(model, campaign, run)).collect();
+    let diagnosis = verdict::judge(model, &yardstick.campaign(campaign), &yardstick, &unseen, progress)?;
     Ok(diagnosis.converted(
         |size| yardstick.outside(size),
         |about, name, value| yardstick.coefficient_outside(about, name, value),

@@ -9,9 +9,10 @@ use std::collections::BTreeMap;
 pub struct Diagnosis {
     /// The answer in a word.
     pub verdict: Verdict,
-    /// Held-out residual of the model as it is, µg: each run predicted from the others.
+    /// Residual of the model as it is, µg, on the runs that training never saw: what a comparison prints. Where it saw all
+    /// runs, each is predicted from the others.
     pub residual_ug: f64,
-    /// Held-out residual with all findings added, µg.
+    /// The same with all findings added, µg: it falls as much as a prediction of those runs from the others falls.
     pub residual_after_ug: f64,
     /// The same two without what is each run's own, µg: its offset, its mounting, and the initial states of
     /// effects with a memory. Nobody can predict that. Of fewer than three runs nothing is left out.

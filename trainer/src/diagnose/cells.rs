@@ -80,6 +80,18 @@ impl<'a> Cells<'a> {
         Self { runs: self.runs.iter().map(binned).collect(), ..*self }
     }
 
+    /// Time between two samples where they come fastest, s: the least of the runs' medians; 0 where there are no two.
+    pub fn interval_s(&self) -> f64 {
+        let median = |run: &RunCells| {
+            let time_us = |row: &crate::campaign::Row| row.sample.time_us;
+            let mut steps: Vec<u64> =
+                run.run.rows.windows(2).map(|pair| time_us(&pair[1]).saturating_sub(time_us(&pair[0]))).collect();
+            let middle = steps.len() / 2;
+            (!steps.is_empty()).then(|| *steps.select_nth_unstable(middle).1 as f64 * 1e-6)
+        };
+        self.runs.iter().filter_map(median).min_by(f64::total_cmp).unwrap_or(0.0)
+    }
+
     /// Number of cells.
     pub fn len(&self) -> usize {
         self.runs.iter().map(|run| run.cells.len()).sum()
@@ -119,6 +131,19 @@ impl<'a> Cells<'a> {
         let (squares, samples) = pairs
             .fold((0.0, 0.0), |(sum, all), (cell, value)| (sum + cell.samples * value * value, all + cell.samples));
         (squares / f64::max(samples, 1.0)).sqrt()
+    }
+
+    /// Correlation of two courses over the samples: of each run cells × 1.
+    pub fn correlation(&self, one: &Columns, other: &Columns) -> f64 {
+        let values = || one.iter().flat_map(|run| run.iter()).zip(other.iter().flat_map(|run| run.iter()));
+        let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
+            self.iter().zip(values()).map(|(cell, (one, other))| cell.samples * of(*one, *other)).sum()
+        };
+        let samples = sum(&|_, _| 1.0).max(1.0);
+        let [mean, other_mean] = [sum(&|one, _| one), sum(&|_, other| other)].map(|sum| sum / samples);
+        let covariance = sum(&|one, other| (one - mean) * (other - other_mean));
+        let squares = sum(&|one, _| (one - mean).powi(2)) * sum(&|_, other| (other - other_mean).powi(2));
+        if squares > 0.0 { covariance / squares.sqrt() } else { 0.0 }
     }
 
     /// All cells in order.

@@ -7,10 +7,12 @@ mod residuals;
 mod static_map;
 mod sum_channel;
 
-pub(super) mod basis;
+mod basis;
+pub(super) mod retraining;
 pub(super) use effect_set::{EffectSet, amplitudes, is_placed, name_of};
 pub(super) use jacobian::Jacobian;
 pub(super) use residuals::{CellResiduals, FixedEffects};
+pub(super) use retraining::Inputs;
 pub(super) use static_map::StaticMap;
 pub(super) use sum_channel::SumChannel;
 
@@ -68,6 +70,21 @@ impl<'a> Forward<'a> {
     /// Derivatives of what these effects leave beside fixed ones, by their free parameters, from where they leave `base`.
     pub fn jacobian(&self, fixed: &FixedEffects, set: &EffectSet, base: &CellResiduals) -> Jacobian {
         Jacobian::of(set, base, |moved| self.residuals_beside(fixed, moved))
+    }
+
+    /// Where these effects move the map's inputs.
+    pub fn inputs(&self, set: &EffectSet) -> Inputs {
+        retraining::inputs(&self.cells, &contributions(&self.cells, set))
+    }
+
+    /// How retraining could change the reading at these inputs, µg per expected change: of each run cells × functions.
+    pub fn retraining(&self, inputs: &Inputs) -> Columns {
+        retraining::of_retraining(&self.map, inputs)
+    }
+
+    /// The same measurements with another map.
+    pub fn with_map(&self, map: StaticMap) -> Self {
+        Self::new(self.cells.clone(), map, self.sum.clone())
     }
 
     /// What effects by themselves add to the residual once compensated, µg: of each run cells × 1.

@@ -23,7 +23,7 @@ mod structure;
 pub(super) use dependence::dependences;
 
 use super::cells::{Columns, generous, stacked, width};
-use super::forward::{EffectSet, basis};
+use super::forward::{EffectSet, retraining};
 use super::noise::{Component, InitialStates, NoiseModel};
 use super::problem::{NoiseModels, Problem, constrained};
 use super::regression::{Gls, Measured, Score};
@@ -175,7 +175,7 @@ impl Scene<'_> {
         let (kink, levels) = (rectified(self.problem), levels(self.problem));
         let course = kink.course.whole(self.problem.cells());
         // Only a smooth map may absorb it, not whatever a network may be bent to.
-        let smooth = basis::of_smooth_map(&self.problem.forward.map, self.problem.cells());
+        let smooth = retraining::of_smooth_map(&self.problem.forward.map, self.problem.cells());
         let is_kink = |one: &LackOfFit| one.delta_bic > LEAST_RECTIFIED && one.size_ug > self.bent_ug();
         let found = self.judged(&kink, &self.free(&smooth)?).filter(is_kink)?;
         let deviances = |scatter: &f64| {

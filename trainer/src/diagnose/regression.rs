@@ -3,5 +3,5 @@
 mod gls;
 mod variance_components;
 
-pub(super) use gls::{Gls, Score, compressed};
+pub(super) use gls::{Gls, Score, directions};
 pub(super) use variance_components::Measured;

@@ -113,6 +113,8 @@ pub const NOTHING_UG: f64 = 1e-9;
 /// ΔBIC that an effect must have to be named. Kass & Raftery 1995 call 10 very strong; there are a hundred shapes to choose
 /// from, and no formula is exact.
 pub const LEAST_DELTA_BIC: f64 = 25.0;
+/// An amplitude that differs from nothing by fewer standard uncertainties is not known to be there.
+pub const SIGNIFICANT_SIGMA: f64 = 3.0;
 /// Effects with less are compared with structures that no effect has before they are believed.
 pub const WEAK_DELTA_BIC: f64 = 400.0;
 /// Most findings.
@@ -135,6 +137,15 @@ pub const HALVED: f64 = 0.5;
 pub const LOWERED: f64 = 0.9;
 /// Nor must all of it and what is predictable both grow to this.
 pub const WORSE: f64 = 1.1;
+/// Heat, stress and moisture spread through a body with more than one time constant; formulas have one. Others may be so many
+/// times as long,
+pub const SECOND_TAUS: [f64; 4] = [0.125, 0.35, 2.8, 8.0];
+/// with this share of the effect.
+pub const SECOND_TAU_SHARE: f64 = 0.3;
+/// Runs that training never saw must not be read worse than by this.
+pub const NO_WORSE: f64 = 1.01;
+/// A formula may be wrong by this share of what its effect does: an effect that does the same must be larger.
+pub const INEXACT: f64 = 0.1;
 /// Share of the gain in likelihood that must hold for runs that were left out.
 pub const PREDICTED: f64 = 0.25;
 /// What varies by less than this share of its square is part of what came before.

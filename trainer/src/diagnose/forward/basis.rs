@@ -1,51 +1,26 @@
-//! What retraining could make of the static map's reading: polynomials, and the network's derivatives by its weights.
+//! What retraining could add to a static map: polynomials, and the network's derivatives by its weights.
 
-use super::static_map::StaticMap;
-use crate::diagnose::cells::{Cell, Cells, Columns, RunCells};
 use crate::diagnose::thresholds::{MAP_POWERS, MAP_TANGENTS};
 use crate::fit::network::{HIDDEN_SIZE, OUTPUT_SIZE};
 use firmware_core::activation::{sigmoid, slope};
-use nalgebra::DMatrix;
 use protocol::Weights;
 use protocol::limits::HIDDEN;
-use rayon::prelude::*;
 
-/// How the reading can change by retraining, µg per expected change: polynomials and the network's tangents, of each run
-/// cells × directions.
-pub fn of_retraining(map: &StaticMap, cells: &Cells) -> Columns {
-    let (still, weights) = (cells.is_still(), map.weights());
-    let row = |cell: &Cell| {
-        if still {
-            // The slope is stated, not learnt: retraining can change the course over temperature only.
-            return chebyshev(MAP_POWERS.1, cell.t);
-        }
-        let mut values = polynomials(cell.x, cell.t);
-        values.extend(tangents(&weights, cell).map(|value| value * MAP_TANGENTS));
-        values
-    };
-    departures(map, cells, row)
+/// Values of all functions at scaled inputs, in units of the network's output, each at its expected size: polynomials and
+/// the network's derivatives.
+pub fn of_retraining(weights: &Weights, x: f64, t: f64) -> Vec<f64> {
+    let mut values = polynomials(x, t);
+    values.extend(derivatives(weights, x, t).map(|value| value * MAP_TANGENTS));
+    values
 }
 
-/// How the reading of a smooth instrument can change, µg per expected change: polynomials alone, of each run
-/// cells × polynomials.
-pub fn of_smooth_map(map: &StaticMap, cells: &Cells) -> Columns {
-    departures(map, cells, |cell| polynomials(cell.x, cell.t))
-}
-
-/// A row of departures from the line in each cell, µg, from those in units of the network's output.
-fn departures(map: &StaticMap, cells: &Cells, row: impl Fn(&Cell) -> Vec<f64> + Sync) -> Columns {
-    let departure_ug = map.output_ug();
-    let of = |run: &RunCells| {
-        let rows: Vec<Vec<f64>> = run.cells.iter().map(&row).collect();
-        let width = rows.first().map_or(0, Vec::len);
-        DMatrix::from_row_iterator(rows.len(), width, rows.into_iter().flatten().map(|value| value * departure_ug))
-    };
-    cells.runs.par_iter().map(of).collect()
+/// The same where the slope is stated, not learnt: retraining can change the course over temperature only.
+pub fn of_course(t: f64) -> Vec<f64> {
+    chebyshev(MAP_POWERS.1, t)
 }
 
 /// Derivatives of the reading by the network's weights, each at its expected size.
-fn tangents(weights: &Weights, cell: &Cell) -> impl Iterator<Item = f64> {
-    let (x, t) = (cell.x, cell.t);
+fn derivatives(weights: &Weights, x: f64, t: f64) -> impl Iterator<Item = f64> {
     (0..HIDDEN).flat_map(move |unit| {
         let [wx, wt] = weights.input[unit].map(f64::from);
         let u = f64::from(weights.bias[unit]) + wx * x + wt * t;
@@ -73,9 +48,7 @@ fn chebyshev(most: usize, x: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::cells::width;
-    use crate::diagnose::example::{Recipe, model, problem};
-    use crate::diagnose::problem::scale;
+    use crate::diagnose::example::model;
     use firmware_core::Network;
 
     #[test]
@@ -92,13 +65,13 @@ mod tests {
     }
 
     #[test]
-    fn the_tangents_are_the_networks_derivatives_by_its_weights() {
+    fn the_derivatives_are_the_networks_derivatives_by_its_weights() {
         let mut weights = model().weights();
         weights.output = [0.5; HIDDEN];
         weights.input[3] = [-0.75, 1.5];
         weights.bias[3] = -0.25;
-        let cell = Cell { x: 0.4, t: -0.6, ..Cell::plain(0, 0.0, 0.0) };
-        let found: Vec<f64> = tangents(&weights, &cell).collect();
+        let (x, t) = (0.4, -0.6);
+        let found: Vec<f64> = derivatives(&weights, x, t).collect();
         assert_eq!(found.len(), 4 * HIDDEN);
         // A step that f32 holds exactly.
         let step = 1.0 / 1024.0_f32;
@@ -111,27 +84,12 @@ mod tests {
                         3 => moved.bias[unit] += step,
                         input => moved.input[unit][input - 1] += step,
                     }
-                    Network::<f64>::new(&moved).evaluate(cell.x, cell.t)
+                    Network::<f64>::new(&moved).evaluate(x, t)
                 };
                 let worked = (output(step) - output(-step)) / (2.0 * f64::from(step)) * size;
                 let tangent = found[4 * unit + part];
                 assert!((tangent - worked).abs() < 1e-5 * size, "{unit} {part}: {tangent} {worked}");
             }
         }
-    }
-
-    #[test]
-    fn a_map_of_a_still_sensor_may_change_over_temperature_only() {
-        let campaign = Recipe { runs: 2, rows: 60, ..Recipe::default() }.campaign();
-        let problem = problem(&campaign);
-        let map = &problem.forward.map;
-        // As if the reading went so far that all these levels were one.
-        let still = Cells::new(&campaign, scale(&model()), 1, 1e3, None);
-        assert_eq!(width(&of_retraining(map, &still)), MAP_POWERS.1 + 1);
-        let all = width(&of_smooth_map(map, problem.cells()));
-        assert_eq!(width(&of_retraining(map, problem.cells())), all + 4 * HIDDEN);
-        // In µg: the first is a constant, one unit of the network's output.
-        let first = of_smooth_map(map, problem.cells());
-        assert!(first.iter().all(|run| run.column(0).iter().all(|value| (value - map.output_ug()).abs() < 1e-9)));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::effect_set::{EffectSet, is_placed};
 use crate::campaign::Row;
-use crate::diagnose::cells::{Cells, RunCells};
+use crate::diagnose::cells::{Cell, Cells, RunCells};
 use crate::fit::effects::{self, Contribution, mean_contribution};
 use rayon::prelude::*;
 
@@ -29,6 +29,14 @@ pub fn contributions(cells: &Cells, set: &EffectSet) -> Contributions {
         all
     };
     cells.runs.par_iter().map(of).collect()
+}
+
+/// The inputs of a cell under a contribution.
+pub fn moved(cells: &Cells, cell: &Cell, contribution: &Contribution) -> [f64; 2] {
+    [
+        cell.x - contribution.delta_f_hz / cells.scale.delta_f_half_span_hz,
+        cell.t + contribution.temperature_c / cells.scale.temperature_half_span_c,
+    ]
 }
 
 #[cfg(test)]

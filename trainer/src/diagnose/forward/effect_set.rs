@@ -64,6 +64,17 @@ impl EffectSet {
             .collect()
     }
 
+    /// One effect with a time constant so many times as long; `None` of one that remembers nothing, or beyond its bounds.
+    pub fn with_tau_times(&self, ratio: f64) -> Option<Self> {
+        let about = self.effects.first()?.about;
+        let remembers = self.memories().any(|memory| matches!(memory, Memory::Lag { .. }));
+        let place = about.parameters.iter().position(|about| about.role == Role::Shape).filter(|_| remembers)?;
+        let mut values = self.coefficients.values.first()?.clone();
+        let bounds = about.parameters[place].low..=about.parameters[place].high;
+        *values.get_mut(place)? *= ratio;
+        bounds.contains(&values[place]).then(|| Self::NONE.with(&self.effects[0], &values))
+    }
+
     /// What each of them remembers.
     pub fn memories(&self) -> impl Iterator<Item = Memory<f64>> {
         self.effects.iter().zip(&self.coefficients.values).map(|(chosen, values)| {

@@ -1,7 +1,7 @@
 //! The static map as it is modelled now, in cells: what it reads wrong.
 
-use super::contributions::Contributions;
-use crate::campaign::Row;
+use super::basis;
+use super::contributions::{Contributions, moved};
 use crate::diagnose::cells::{Cell, Cells, Columns, RunCells};
 use crate::diagnose::thresholds::LEAST_SAMPLE_UG;
 use crate::fit::effects::Contribution;
@@ -20,22 +20,58 @@ const UG: f64 = 1e6;
 #[derive(Clone)]
 pub struct StaticMap {
     model: Model,
+    weights: Weights,
     network: Network<f64>,
     scale: Scale<f64>,
     /// What its readings are multiplied with.
     factor: f64,
+    /// Whether its slope is stated and not learnt.
+    still: bool,
+    /// What has been added to it since it was trained: amplitudes of [`basis`]; empty for nothing.
+    added: Vec<f64>,
 }
 
 impl StaticMap {
     /// The static map of `model`, its readings in the yardstick's units; its effects are not part of it.
-    pub fn new(model: &Model, yardstick: &Yardstick) -> Self {
+    pub fn new(model: &Model, yardstick: &Yardstick, still: bool) -> Self {
         let (network, scale) = (Network::new(&model.weights()), Scale::new(&model.scaling.to_wire()));
-        Self { network, scale, model: model.clone(), factor: yardstick.factor() }
+        Self {
+            weights: model.weights(),
+            network,
+            scale,
+            model: model.clone(),
+            factor: yardstick.factor(),
+            still,
+            added: Vec::new(),
+        }
     }
 
     /// What the static map reads at the scaled inputs, g.
     pub fn reading_g(&self, x: f64, t: f64) -> f64 {
-        self.factor * self.scale.reading_g(x, t, self.network.evaluate(x, t))
+        let reading_g = self.factor * self.scale.reading_g(x, t, self.network.evaluate(x, t));
+        if self.added.is_empty() {
+            return reading_g;
+        }
+        let added: f64 = self.functions(x, t).iter().zip(&self.added).map(|(value, amplitude)| value * amplitude).sum();
+        reading_g + added * self.output_ug() / UG
+    }
+
+    /// What retraining could add at scaled inputs, in units of the network's output, each at its expected size.
+    pub fn functions(&self, x: f64, t: f64) -> Vec<f64> {
+        if self.still { basis::of_course(t) } else { basis::of_retraining(&self.weights, x, t) }
+    }
+
+    /// The same map as it was trained.
+    pub fn as_trained(&self) -> Self {
+        Self { added: Vec::new(), ..self.clone() }
+    }
+
+    /// The same map with so much more of each function.
+    pub fn with(&self, amplitudes: impl Iterator<Item = f64>) -> Self {
+        let mut map = self.clone();
+        let before = self.added.iter().copied().chain(std::iter::repeat(0.0));
+        map.added = amplitudes.zip(before).map(|(more, before)| before + more).collect();
+        map
     }
 
     /// Reading minus reference in each cell, µg, under these contributions: of each run cells × 1.
@@ -74,21 +110,13 @@ impl StaticMap {
     }
 
     fn cell_residual_ug(&self, cells: &Cells, cell: &Cell, contribution: &Contribution) -> f64 {
-        let x = cell.x - contribution.delta_f_hz / cells.scale.delta_f_half_span_hz;
-        let t = cell.t + contribution.temperature_c / cells.scale.temperature_half_span_c;
+        let [x, t] = moved(cells, cell, contribution);
         (self.reading_g(x, t) - contribution.bias_g - cell.level_g) * UG
     }
 
-    /// Scatter of the static reading from sample to sample, µg.
-    pub fn sample_ug(&self, cells: &Cells) -> Option<f64> {
-        let residuals = |run: &RunCells| -> Vec<f64> {
-            let of = |row: &Row| {
-                let [x, t] = cells.scale.inputs(&row.sample);
-                (self.reading_g(x, t) - row.reference_g) * UG
-            };
-            run.run.rows.iter().map(of).collect()
-        };
-        let all: Vec<Vec<f64>> = cells.runs.iter().map(residuals).collect();
+    /// Scatter of the residual from sample to sample, µg, from that of every row, µg: of each run rows × 1.
+    pub fn sample_ug(cells: &Cells, residuals: &Columns) -> Option<f64> {
+        let all: Vec<Vec<f64>> = residuals.iter().map(|run| run.iter().copied().collect()).collect();
         sample_sigma_g(cells.runs.iter().map(|run| run.run).zip(&all)).map(|sigma| sigma.max(LEAST_SAMPLE_UG))
     }
 
@@ -108,11 +136,6 @@ impl StaticMap {
     /// At the middle of the domain, Hz/g.
     pub fn scale_factor_hz_per_g(&self, cells: &Cells) -> f64 {
         cells.scale.delta_f_half_span_hz * 2.0 / (self.reading_g(1.0, 0.0) - self.reading_g(-1.0, 0.0))
-    }
-
-    /// The weights that the network has.
-    pub fn weights(&self) -> Weights {
-        self.model.weights()
     }
 
     /// A unit of the network's output, µg.

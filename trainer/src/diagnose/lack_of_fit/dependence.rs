@@ -20,17 +20,17 @@ pub const TEMPERATURE: &str = "temperature_c";
 
 /// How the residual follows each quantity, without and with the findings.
 pub fn dependences(
-    problem: &Problem,
-    before: &EffectSet,
-    after: &EffectSet,
+    before: (&Problem, &EffectSet),
+    after: (&Problem, &EffectSet),
     noises: &NoiseModels,
     channels: &[String],
 ) -> Vec<Dependence> {
-    let gls = |set: &EffectSet| {
+    let gls = |(problem, set): (&Problem, &EffectSet)| {
         let nuisance = constrained(problem, set, noises).delta;
         let residual = problem.forward.residuals(set).delta;
         Some((Gls::new(problem.cells(), &noises.initial, &noises.delta, &residual, &nuisance)?, nuisance))
     };
+    let problem = after.0;
     let (Some(before), Some(after)) = (gls(before), gls(after)) else { return Vec::new() };
     let judged = |(on, columns): (String, Columns)| {
         let [(before_ug, chance_before), (after_ug, chance_after)] =
@@ -150,7 +150,7 @@ mod tests {
         let course = |moment: &Moment| slow(moment);
         let campaign = Recipe { channel: Some(("stranger", &course)), bias_g, ..Recipe::default() }.campaign();
         let (problem, none) = (problem(&campaign), EffectSet::NONE);
-        dependences(&problem, &none, &none, &white(&problem, &none, 5.0), &campaign.channels)
+        dependences((&problem, &none), (&problem, &none), &white(&problem, &none, 5.0), &campaign.channels)
     }
 
     /// From −1 to 1, of a period that nothing else has.

@@ -22,6 +22,13 @@ impl NoiseModels {
         Self { delta: self.delta.small(), sum: self.sum.map(|noise| noise.small()), initial: self.initial.clone() }
     }
 
+    /// The same parts with the noise of a sample, and of a °C unseen, of this problem.
+    pub fn of(&self, problem: &Problem) -> Self {
+        let mut noises = self.clone();
+        (noises.delta.sample, noises.delta.per_c) = (problem.sample_ug, problem.ug_per_c);
+        noises
+    }
+
     /// The same sizes beside other effects.
     pub fn beside(&self, initial: &Arc<InitialStates>) -> Self {
         Self { initial: initial.clone(), ..*self }

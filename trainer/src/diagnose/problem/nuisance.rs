@@ -5,7 +5,7 @@ use super::noise_models::NoiseModels;
 use crate::diagnose::cells::{Columns, generous, joined, stacked};
 use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects, Jacobian};
 use crate::diagnose::regression::Gls;
-use crate::diagnose::thresholds::FREE_IN_SUM;
+use crate::diagnose::thresholds::{FREE_IN_SUM, SECOND_TAU_SHARE, SECOND_TAUS};
 use nalgebra::DMatrix;
 
 /// Columns whose amplitudes are nuisances: a row a cell, a column a direction; of about one where they are expected.
@@ -30,9 +30,18 @@ pub fn fixed(problem: &Problem, set: &EffectSet) -> Nuisance {
     Nuisance { delta: problem.basis.clone(), sum }
 }
 
+/// The same, and what formulas of these effects may lack.
+fn inexact(problem: &Problem, set: &EffectSet) -> Nuisance {
+    let Nuisance { delta, sum } = fixed(problem, set);
+    let alone = |one: EffectSet| problem.forward.alone_ug(&one).into_iter().map(|run| run * SECOND_TAU_SHARE).collect();
+    let columns: Vec<Columns> =
+        set.each().flat_map(|one| SECOND_TAUS.map(|ratio| one.with_tau_times(ratio))).flatten().map(alone).collect();
+    Nuisance { delta: if columns.is_empty() { delta } else { stacked(&delta, &joined(&columns)) }, sum }
+}
+
 /// What may adapt, the effects' own parameters too, as long as no noise is known.
 pub fn free(problem: &Problem, set: &EffectSet) -> Nuisance {
-    let fixed = fixed(problem, set);
+    let fixed = inexact(problem, set);
     if set.effects.is_empty() {
         return fixed;
     }
@@ -41,7 +50,7 @@ pub fn free(problem: &Problem, set: &EffectSet) -> Nuisance {
 
 /// What may adapt, the effects' own parameters too as far as the sum of the frequencies leaves them open.
 pub fn constrained(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -> Nuisance {
-    let fixed = fixed(problem, set);
+    let fixed = inexact(problem, set);
     if set.effects.is_empty() {
         return fixed;
     }
@@ -137,11 +146,35 @@ mod tests {
     }
 
     #[test]
+    fn a_formula_of_one_time_constant_may_lack_others() {
+        with_sum(|problem, lag, gradient| {
+            let maps = width(&problem.basis);
+            let nuisance = inexact(problem, lag);
+            assert_eq!(width(&nuisance.delta), maps + SECOND_TAUS.len());
+            for (place, ratio) in SECOND_TAUS.into_iter().enumerate() {
+                let other = lag.with_tau_times(ratio).unwrap();
+                assert!(
+                    (other.coefficients.values[0][0] / (ratio * lag.coefficients.values[0][0]) - 1.0).abs() < 1e-12
+                );
+                let worked = dense(&problem.forward.alone_ug(&other)) * SECOND_TAU_SHARE;
+                assert!(near(&dense(&nuisance.delta).columns(maps + place, 1).into_owned(), &worked, 1e-12));
+            }
+            // Its amplitude is the effect's own, and beyond the bounds of the formula there are none.
+            assert_eq!(
+                gradient.with_tau_times(2.8).unwrap().coefficients.values[0][0],
+                gradient.coefficients.values[0][0]
+            );
+            assert!(gradient.with_tau_times(1e6).is_none() && EffectSet::NONE.with_tau_times(2.8).is_none());
+            assert_eq!(inexact(problem, &EffectSet::NONE).delta, problem.basis);
+        });
+    }
+
+    #[test]
     fn free_parameters_each_add_a_column_so_large_that_it_costs_nothing() {
         with_sum(|problem, lag, gradient| {
             let both = lag.and(gradient);
             let nuisance = free(problem, &both);
-            let maps = width(&problem.basis);
+            let maps = width(&inexact(problem, &both).delta);
             assert_eq!(width(&nuisance.delta), maps + 3);
             let all = dense(&nuisance.delta);
             for column in maps..maps + 3 {
@@ -157,7 +190,7 @@ mod tests {
             let both = lag.and(gradient);
             let noises = white(problem, &both, 5.0);
             let (open, bound) = (free(problem, &both), constrained(problem, &both, &noises));
-            let maps = width(&problem.basis);
+            let maps = width(&inexact(problem, &both).delta);
             let largest = |nuisance: &Nuisance, column: usize| dense(&nuisance.delta).column(maps + column).amax();
             // The lag's time constant is known to about a second from the sum; the gradient's two are as they were.
             assert!(largest(&bound, 0) < 0.05 * largest(&open, 0), "{} {}", largest(&bound, 0), largest(&open, 0));

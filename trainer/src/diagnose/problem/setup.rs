@@ -4,9 +4,9 @@ use super::Problem;
 use crate::campaign::Campaign;
 use crate::diagnose::cells::Cells;
 use crate::diagnose::error::DiagnoseError;
-use crate::diagnose::forward::{EffectSet, Forward, StaticMap, SumChannel, basis};
+use crate::diagnose::forward::{EffectSet, Forward, StaticMap, SumChannel};
 use crate::diagnose::noise::NoiseModel;
-use crate::diagnose::regression::compressed;
+use crate::diagnose::regression::directions;
 use crate::effect_choice::{EffectChoice, choose};
 use crate::fit::dataset::InputScale;
 use crate::model::Model;
@@ -21,21 +21,26 @@ const UNUSABLE: &str = "references and readings are too large or too small for n
 
 /// Model and measurements before the judge, in the units of `yardstick`, as `campaign` is.
 pub fn problem<'a>(model: &Model, campaign: &'a Campaign, yardstick: &Yardstick) -> Result<Problem<'a>, DiagnoseError> {
-    let map = StaticMap::new(model, yardstick);
+    let map = StaticMap::new(model, yardstick, false);
     let max_gap_us = model.domain.max_gap_us;
     let cells = Cells::new(campaign, scale(model), max_gap_us, map.reach_g(), yardstick.gravity);
-    let sample_ug = map.sample_ug(&cells).ok_or(DiagnoseError::NoNoise)?;
+    let map = StaticMap::new(model, yardstick, cells.is_still());
     let ug_per_c = map.ug_per_c(&cells);
     if !map.scale_factor_hz_per_g(&cells).is_finite() {
         return Err(DiagnoseError::Numbers(FLAT));
     }
+    let sum = SumChannel::new(&cells);
+    let forward = Forward::new(cells, map, sum);
+    let alone = forward.residual_in_ug(&forward.cells.by_sample(), &EffectSet::NONE);
+    let sample_ug = StaticMap::sample_ug(&forward.cells, &alone).ok_or(DiagnoseError::NoNoise)?;
     if !(sample_ug.is_finite() && ug_per_c.is_finite()) {
         return Err(DiagnoseError::Numbers(ABSURD));
     }
-    let first_guess = NoiseModel::first_guess(sample_ug, ug_per_c);
-    let basis = compressed(&cells, &first_guess, &basis::of_retraining(&map, &cells));
-    let sum = SumChannel::new(&cells);
-    Ok(Problem { forward: Forward::new(cells, map, sum), basis, sample_ug, ug_per_c })
+    let inputs = forward.inputs(&EffectSet::NONE);
+    let all = forward.retraining(&inputs);
+    let directions = directions(&forward.cells, &NoiseModel::first_guess(sample_ug, ug_per_c), &all);
+    let basis = all.iter().map(|run| run * &directions).collect();
+    Ok(Problem { forward, basis, directions, sample_ug, ug_per_c, inputs, unseen: None })
 }
 
 /// A model without a slope explains every signal equally badly.

@@ -80,6 +80,14 @@ impl Gls {
         deviance.is_finite().then_some(Self { whitening, nuisance, residual, factor, absorbed, deviance })
     }
 
+    /// Amplitudes of the nuisance, one a column of it, if what is expected of them is learnt so many times: each time they
+    /// are expected where they were found the time before.
+    pub fn absorbed(&self, times: usize) -> DVector<f64> {
+        // With what was absorbed taken out, Zᵀ(e − Z·a) = G·a − Z·Zᵀ·a = a is the next right-hand side.
+        let each = std::iter::successors(Some(self.absorbed.clone()), |last| Some(self.factor.solve(last)));
+        each.take(times).fold(DVector::zeros(self.absorbed.len()), |sum, next| sum + next)
+    }
+
     /// The score of k columns: of each run cells × k, in the residual's unit per unit of an amplitude.
     pub fn score(&self, columns: &Columns) -> Score {
         let columns = &self.whitening.of(columns);
@@ -235,13 +243,12 @@ fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {
     2.0 * factor.l_dirty().diagonal().iter().map(|value| value.ln()).sum::<f64>()
 }
 
-/// The same nuisance (of each run cells × p) in fewer columns: directions that the data say nothing about are left out.
-pub fn compressed(cells: &Cells, noise: &NoiseModel, nuisance: &Columns) -> Columns {
+/// Directions of a nuisance about which the data say anything: a row a column of it, a column a direction.
+pub fn directions(cells: &Cells, noise: &NoiseModel, nuisance: &Columns) -> DMatrix<f64> {
     let white = Whitening::new(cells, &InitialStates::default(), noise).of(nuisance);
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(product(&white, &white));
     let kept: Vec<usize> = (0..eigenvalues.len()).filter(|&i| eigenvalues[i] > LEAST_INFORMATION).collect();
-    let directions = eigenvectors.select_columns(&kept);
-    nuisance.iter().map(|run| run * &directions).collect()
+    eigenvectors.select_columns(&kept)
 }
 
 #[cfg(test)]

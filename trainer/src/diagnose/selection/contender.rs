@@ -69,6 +69,17 @@ pub struct Found {
     pub winner: Contender,
     /// The others in order.
     pub rivals: Vec<Contender>,
+    /// The noise without it.
+    pub noises: NoiseModels,
+}
+
+/// What came of one search.
+#[derive(Clone, Debug)]
+pub struct Searched {
+    /// The effect that is missed most, if any is.
+    pub found: Option<Found>,
+    /// The best effect within its bounds, be it missed or not.
+    pub best: Option<Contender>,
     /// Largest ΔBIC of an effect that would have to leave its physical bounds.
     pub at_bound: f64,
     /// The noise without it.

@@ -6,12 +6,13 @@
 use crate::diagnose::cells::{Cell, Columns, RunCells, product, stacked};
 use crate::diagnose::forward::EffectSet;
 use crate::diagnose::noise::{InitialStates, Shares, Whitening};
-use crate::diagnose::problem::{NoiseModels, Problem, fixed};
+use crate::diagnose::problem::{NoiseModels, Problem, ROUNDS, fixed};
 use crate::diagnose::thresholds::{FEW_RUNS, LEAST_OF_ITS_OWN, PARTS_OF_FEW};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::ops::Range;
 
 /// What is read wrong when each run is predicted from the others.
+#[derive(Clone)]
 pub struct HeldOut {
     /// RMS over all samples, µg.
     pub residual_ug: f64,
@@ -33,35 +34,104 @@ impl HeldOut {
     }
 }
 
-/// Predicts each run from all the others.
+/// Predicts each run from all the others, beginning with the map that training made.
 pub fn held_out(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -> HeldOut {
+    let whole_runs = problem.cells().runs.len() >= FEW_RUNS;
+    HeldOut { whole_runs, ..left_out(&problem.as_trained(), set, noises, folds(problem), ROUNDS) }
+}
+
+/// Predicts the runs that training never saw from those that it saw, beginning with the map that it made; where it saw all
+/// or none of them, each run from all the others.
+pub fn predicted(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -> HeldOut {
+    let Some(unseen) = &problem.unseen else { return held_out(problem, set, noises) };
+    let runs = problem.cells().runs.iter().enumerate().filter(|(index, _)| unseen[*index]);
+    let fold = runs.map(|(index, run)| (index, 0..run.cells.len())).collect();
+    let as_trained = problem.as_trained();
+    HeldOut { whole_runs: true, ..left_out(&as_trained, set, noises, vec![fold], ROUNDS) }
+}
+
+/// Parts of runs that are left out together: which run, and which of its cells.
+type Fold = Vec<(usize, Range<usize>)>;
+
+/// Each fold predicted from all others; what is expected of the map and of parameters is learnt so many times, each time
+/// from where it was found before.
+fn left_out(problem: &Problem, set: &EffectSet, noises: &NoiseModels, folds: Vec<Fold>, rounds: usize) -> HeldOut {
     let (residual, nuisance) = (problem.forward.residuals(set).delta, recalling(problem, set));
     let whitening = Whitening::new(problem.cells(), &noises.initial, &noises.delta);
     let (white_residual, white_nuisance) = (whitening.of(&residual), whitening.of(&nuisance));
     let mut normal = product(&white_nuisance, &white_nuisance);
     (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1.0);
     let right = product(&white_nuisance, &white_residual);
-    let (mut squares, mut own, mut samples, mut deviance) = (0.0, 0.0, 0.0, 0.0);
-    let folds = folds(problem);
-    let (parts, whole_runs) = (folds.len(), problem.cells().runs.len() >= FEW_RUNS);
-    for (run, rows) in folds {
-        let part = |matrix: &Columns| matrix[run].rows(rows.start, rows.len()).into_owned();
-        let here = vec![part(&white_nuisance)];
-        let others = &normal - product(&here, &here);
-        let rest = &right - product(&here, &vec![part(&white_residual)]);
-        let Some(factor) = Cholesky::new(others) else { continue };
-        let learnt = factor.solve(&rest);
-        let predicted: DMatrix<f64> = part(&residual) - part(&nuisance) * &learnt;
-        let cells = &problem.cells().runs[run].cells[rows.clone()];
-        for (cell, residual) in cells.iter().zip(predicted.iter()) {
-            squares += cell.samples * residual.powi(2) + (cell.samples - 1.0) * problem.sample_ug.powi(2);
-            samples += cell.samples;
+    let mut sums = Sums::default();
+    let parts = folds.len();
+    for fold in folds {
+        let part = |matrix: &Columns| -> Columns {
+            fold.iter().map(|(run, rows)| matrix[*run].rows(rows.start, rows.len()).into_owned()).collect()
+        };
+        let (here, white) = (part(&white_nuisance), part(&white_residual));
+        let Some(factor) = Cholesky::new(&normal - product(&here, &here)) else { continue };
+        let first = factor.solve(&(&right - product(&here, &white)));
+        let learnt = std::iter::successors(Some(first), |last| Some(factor.solve(last)));
+        let learnt = learnt.take(rounds).fold(DMatrix::zeros(normal.nrows(), 1), |sum, next| sum + next);
+        for (index, (run, rows)) in fold.iter().enumerate() {
+            let rows_of = |matrix: &Columns| matrix[*run].rows(rows.start, rows.len()).into_owned();
+            let predicted = rows_of(&residual) - rows_of(&nuisance) * &learnt;
+            let cells = &problem.cells().runs[*run].cells[rows.clone()];
+            sums.add(cells, &predicted, &begun(&noises.initial, *run, rows.clone()), problem.sample_ug);
+            sums.deviance += (&white[index] - &here[index] * &learnt).norm_squared();
         }
-        own += squares_of_its_own(cells, &predicted, &begun(&noises.initial, run, rows.clone()));
-        deviance += (part(&white_residual) - &here[0] * &learnt).norm_squared();
     }
-    let rms = |squares: f64| if samples > 0.0 { (squares.max(0.0) / samples).sqrt() } else { 0.0 };
-    HeldOut { residual_ug: rms(squares), predictable_ug: rms(squares - own), deviance, parts, whole_runs }
+    sums.held_out(parts)
+}
+
+/// What the model reads wrong as it is, in the runs that training never saw, or in all where it saw none of them; `None`
+/// where it saw all of them.
+pub fn as_it_is(problem: &Problem, set: &EffectSet, noises: &NoiseModels, counts: &[bool]) -> Option<HeldOut> {
+    let by_sample = problem.cells().by_sample();
+    let (rows, cells) = (problem.forward.residual_in_ug(&by_sample, set), problem.forward.residuals(set).delta);
+    let mut sums = Sums::default();
+    let (mut squares, mut samples) = (0.0, 0.0);
+    for index in (0..cells.len()).filter(|&index| counts[index]) {
+        let all = 0..cells[index].nrows();
+        let own = begun(&noises.initial, index, all);
+        sums.add(&problem.cells().runs[index].cells, &cells[index], &own, problem.sample_ug);
+        squares += rows[index].norm_squared();
+        samples += rows[index].nrows() as f64;
+    }
+    let runs = counts.iter().filter(|counts| **counts).count();
+    let whole = HeldOut { whole_runs: true, ..sums.held_out(runs) };
+    (samples > 0.0).then(|| HeldOut { residual_ug: f64::sqrt(squares / samples), ..whole })
+}
+
+/// Sums of squares over what was left out.
+#[derive(Default)]
+struct Sums {
+    squares: f64,
+    own: f64,
+    samples: f64,
+    deviance: f64,
+}
+
+impl Sums {
+    /// These cells of a run, what is read wrong there, and what is left of its initial states.
+    fn add(&mut self, cells: &[Cell], residual: &DMatrix<f64>, begun: &[Vec<f64>], sample_ug: f64) {
+        for (cell, residual) in cells.iter().zip(residual.iter()) {
+            self.squares += cell.samples * residual.powi(2) + (cell.samples - 1.0) * sample_ug.powi(2);
+            self.samples += cell.samples;
+        }
+        self.own += squares_of_its_own(cells, residual, begun);
+    }
+
+    fn held_out(&self, parts: usize) -> HeldOut {
+        let rms = |squares: f64| if self.samples > 0.0 { (squares.max(0.0) / self.samples).sqrt() } else { 0.0 };
+        HeldOut {
+            residual_ug: rms(self.squares),
+            predictable_ug: rms(self.squares - self.own),
+            deviance: self.deviance,
+            parts,
+            whole_runs: false,
+        }
+    }
 }
 
 /// What may adapt where something is left out: the map, and the effects' parameters about as far as they
@@ -82,13 +152,13 @@ pub fn recalling(problem: &Problem, set: &EffectSet) -> Columns {
 }
 
 /// What is left out together: a run, or a stretch of a run where there are too few of them.
-fn folds(problem: &Problem) -> Vec<(usize, Range<usize>)> {
+fn folds(problem: &Problem) -> Vec<Fold> {
     let runs = problem.cells().runs.len();
     let parts = if runs < FEW_RUNS { PARTS_OF_FEW.div_ceil(runs.max(1)) } else { 1 };
     let of = |(index, run): (usize, &RunCells)| {
         let cells = run.cells.len();
         let bounds = move |part: usize| cells * part / parts;
-        (0..parts).map(move |part| (index, bounds(part)..bounds(part + 1))).collect::<Vec<_>>()
+        (0..parts).map(move |part| vec![(index, bounds(part)..bounds(part + 1))]).collect::<Vec<_>>()
     };
     problem.cells().runs.iter().enumerate().flat_map(of).collect()
 }
@@ -181,8 +251,12 @@ mod tests {
         for run in 0..4 {
             let others = || (0..4).filter(move |other| *other != run);
             let (z, y) = (white_rows(&problem, others(), &columns), white_rows(&problem, others(), &residual));
-            let prior = DMatrix::identity(z.ncols(), z.ncols());
-            let learnt = (z.transpose() * &z + prior).lu().solve(&(z.transpose() * y)).unwrap();
+            let normal = (z.transpose() * &z + DMatrix::identity(z.ncols(), z.ncols())).lu();
+            // What is expected is learnt anew from where it was found.
+            let mut learnt = DMatrix::zeros(z.ncols(), 1);
+            for _ in 0..ROUNDS {
+                learnt += normal.solve(&(z.transpose() * (&y - &z * &learnt))).unwrap();
+            }
             let left = &residual[run] - &columns[run] * learnt;
             let cells = &problem.cells().runs[run].cells;
             for (cell, value) in cells.iter().zip(left.iter()) {
@@ -203,6 +277,33 @@ mod tests {
     }
 
     #[test]
+    fn runs_that_training_never_saw_are_predicted_from_those_that_it_saw() {
+        let still = Recipe::default().campaign();
+        let truth = EffectSet::NONE.with(&effect("warm-up", &still), &[2e-4, 500.0]);
+        let campaign = disturbed(still, &truth);
+        let mut problem = problem(&campaign);
+        let (none, noises) = (EffectSet::NONE, white(&problem, &truth, 5.0));
+        let all = predicted(&problem, &truth, &noises);
+        assert_eq!(all.parts, 4, "where training saw all or none, each is left out");
+        problem.unseen = Some(vec![false, false, true, false]);
+        let found = predicted(&problem, &truth, &noises);
+        assert_eq!((found.parts, found.whole_runs), (1, true));
+        let third = problem.cells().runs[2].cells.iter().map(|cell| cell.samples).sum::<f64>();
+        let as_it_is = |counts: &[bool], set: &EffectSet| as_it_is(&problem, set, &noises, counts);
+        let [seen, unseen] =
+            [&[true, true, false, true], &[false, false, true, false]].map(|counts| as_it_is(counts, &none).unwrap());
+        assert!((unseen.deviance, seen.parts, unseen.parts) == (0.0, 3, 1) && third > 0.0);
+        // The line reads the warm-up wrong and the noise with it; beside the effect 5 µg are left, predicted or not.
+        let rms = |course: &DMatrix<f64>| (course.norm_squared() / course.nrows() as f64).sqrt();
+        let by_sample = problem.forward.residual_in_ug(&problem.cells().by_sample(), &none);
+        assert!((unseen.residual_ug / rms(&by_sample[2]) - 1.0).abs() < 1e-12);
+        let right = as_it_is(&[false, false, true, false], &truth).unwrap();
+        assert!(found.residual_ug < 6.0 && right.residual_ug < 6.0, "{} {}", found.residual_ug, right.residual_ug);
+        assert!(unseen.residual_ug > 4.0 * right.residual_ug, "{}", unseen.residual_ug);
+        assert!(as_it_is(&[false; 4], &none).is_none());
+    }
+
+    #[test]
     fn a_runs_own_offset_is_not_predictable_and_of_few_runs_parts_are_left_out() {
         let bias_g = |moment: &Moment| [80e-6, -60e-6, 30e-6, -50e-6][moment.run];
         let campaign = Recipe { bias_g: &bias_g, ..Recipe::default() }.campaign();
@@ -219,7 +320,7 @@ mod tests {
         let few = problem(&campaign);
         let folds = folds(&few);
         assert_eq!(folds.len(), PARTS_OF_FEW);
-        let covered: usize = folds.iter().map(|(_, rows)| rows.len()).sum();
+        let covered: usize = folds.iter().flatten().map(|(_, rows)| rows.len()).sum();
         assert_eq!(covered, few.cells().len());
         let found = held_out(&few, &EffectSet::NONE, &white(&few, &EffectSet::NONE, 5.0));
         assert!(!found.whole_runs && (found.structure_ug() - found.residual_ug).abs() < 1e-12);

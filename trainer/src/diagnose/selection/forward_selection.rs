@@ -1,21 +1,23 @@
 //! Forward selection: the effect that is missed most, each judged with everything else free to adapt.
 
 use super::candidate::Candidate;
-use super::contender::{Contender, Found, best_of_each};
+use super::contender::{Contender, Found, Searched, best_of_each};
 use super::predictive::is_predictive;
 use super::screening::{screen, shifted};
+use super::uncertainty::is_determined;
 use crate::diagnose::cells::difference;
-use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects};
+use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects, name_of};
 use crate::diagnose::problem::{
-    GlsPair, NoiseModels, Nuisance, Problem, constrained, fit, initial_states, refine, sum_noise, widened,
+    GlsPair, NoiseModels, Nuisance, Problem, carried, constrained, fit, initial_states, refine, sum_noise, widened,
 };
-use crate::diagnose::thresholds::{CONTENDER_STEPS, CONTENDER_TURNS, FINALISTS};
-use firmware_core::effect::SumResponse;
+use crate::diagnose::thresholds::{CONTENDER_STEPS, CONTENDER_TURNS, FINALISTS, INEXACT, LEAST_DELTA_BIC};
+use firmware_core::effect::{Role, SumResponse};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Everything that stays the same while contenders are compared.
 struct Scene<'a> {
-    problem: &'a Problem<'a>,
+    problem: Cow<'a, Problem<'a>>,
     known: &'a EffectSet,
     fixed: FixedEffects,
     residuals: CellResiduals,
@@ -24,8 +26,15 @@ struct Scene<'a> {
     deviance: f64,
 }
 
-/// The effect that `known` misses most, if the candidates can say.
-pub fn missing(problem: &Problem, known: &EffectSet, candidates: &[Candidate], noises: &NoiseModels) -> Option<Found> {
+/// The effect that `known` misses most, if the candidates can say. `explained` are those that were found before, each with its
+/// ΔBIC.
+pub fn missing(
+    problem: &Problem,
+    known: &EffectSet,
+    explained: &[(EffectSet, f64)],
+    candidates: &[Candidate],
+    noises: &NoiseModels,
+) -> Option<Searched> {
     let scene = Scene::new(problem, known, noises)?;
     let mut order: Vec<Contender> =
         scene.finalists(candidates)?.into_par_iter().filter_map(|contender| scene.contend(contender)).collect();
@@ -35,14 +44,30 @@ pub fn missing(problem: &Problem, known: &EffectSet, candidates: &[Candidate], n
     let mut order = best_of_each(order);
     let at_bound = at_bound.first().filter(|one| is_predictive(problem, known, one).unwrap_or(false));
     let at_bound = at_bound.map_or(f64::NEG_INFINITY, |contender| contender.delta_bic);
-    // An effect must predict runs that its parameters were not fitted to.
-    let winner = loop {
-        let next = (!order.is_empty()).then(|| order.remove(0))?;
-        if next.delta_bic < 0.0 || is_predictive(problem, known, &next)? {
-            break next;
-        }
+    // An effect must be more than others' formulas may lack, and predict runs that its parameters were not fitted to.
+    let is_missing = |next: &Contender| {
+        let needed = LEAST_DELTA_BIC + inexact(problem, explained, &next.alone());
+        Some(next.delta_bic >= needed && is_predictive(problem, known, next)?)
     };
-    Some(Found { winner, rivals: order, at_bound, noises: scene.noises })
+    let (best, mut found) = (order.first().cloned(), None);
+    while found.is_none() && order.first().is_some_and(|next| next.delta_bic >= LEAST_DELTA_BIC) {
+        let winner = order.remove(0);
+        if is_missing(&winner)? {
+            found = Some(Found { winner, rivals: std::mem::take(&mut order), noises: scene.noises.clone() });
+        }
+    }
+    Some(Searched { found, best, at_bound, noises: scene.noises })
+}
+
+/// ΔBIC that an effect may owe to formulas of others that are not exact: to the squared share of their amplitude, as far as
+/// it does the same as they.
+pub fn inexact(problem: &Problem, explained: &[(EffectSet, f64)], next: &EffectSet) -> f64 {
+    let own = problem.forward.alone_ug(next);
+    let of = |(one, delta_bic): &(EffectSet, f64)| {
+        let correlation = problem.cells().correlation(&own, &problem.forward.alone_ug(one));
+        delta_bic.max(0.0) * (INEXACT * correlation).powi(2)
+    };
+    explained.iter().map(of).sum()
 }
 
 impl<'a> Scene<'a> {
@@ -50,66 +75,116 @@ impl<'a> Scene<'a> {
         let (residuals, fixed) = (problem.forward.residuals(known), problem.forward.fixed(known));
         let nuisance = constrained(problem, known, noises);
         let noises = refine(problem, &residuals, &nuisance, noises);
-        let deviance = GlsPair::new(problem, &residuals, &nuisance, &noises)?.deviance();
-        Some(Self { problem, known, fixed, residuals, nuisance, noises, deviance })
+        let mut scene =
+            Self { problem: Cow::Borrowed(problem), known, fixed, residuals, nuisance, noises, deviance: 0.0 };
+        scene.deviance = scene.deviance_without(&scene.noises)?;
+        Some(scene)
+    }
+
+    /// −2 log likelihood without any effect more under these noises. The map takes up what it could, as it does beside each
+    /// contender.
+    fn deviance_without(&self, noises: &NoiseModels) -> Option<f64> {
+        let here = self.around(&EffectSet::NONE, noises)?;
+        Some(here.gls(&here.residuals, noises)?.deviance())
+    }
+
+    /// The same scene where an effect is at work.
+    fn around(&self, own: &EffectSet, noises: &NoiseModels) -> Option<Self> {
+        let problem = carried(&self.problem, &self.known.and(own), noises)?;
+        let (residuals, fixed) = (problem.forward.residuals(self.known), problem.forward.fixed(self.known));
+        let nuisance = constrained(&problem, self.known, &self.noises);
+        let noises = self.noises.clone();
+        Some(Self { problem: Cow::Owned(problem), residuals, fixed, nuisance, noises, ..*self })
     }
 
     /// The regression of what is left, under these noises.
     fn gls(&self, residuals: &CellResiduals, noises: &NoiseModels) -> Option<GlsPair> {
-        GlsPair::new(self.problem, residuals, &self.nuisance, noises)
+        GlsPair::new(&self.problem, residuals, &self.nuisance, noises)
     }
 
     fn finalists(&self, candidates: &[Candidate]) -> Option<Vec<Contender>> {
         let mut chosen: Vec<Contender> = Vec::new();
         for (noises, most) in [self.noises.clone(), self.noises.small()].iter().zip(FINALISTS) {
             let gls = self.gls(&self.residuals, noises)?;
-            let mut screened = screen(self.problem, &gls, self.known, candidates);
+            let mut screened = screen(&self.problem, &gls, self.known, candidates);
             screened.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
             let names = best_of_each(screened.clone());
             let passes = |contender: &Contender| names.iter().take(most).any(|name| name.is_same_effect(contender));
             let is_new = |contender: &Contender| chosen.iter().all(|other| !other.is_same_start(contender));
             let next: Vec<Contender> = screened.into_iter().filter(|one| passes(one) && is_new(one)).collect();
-            chosen.extend(next.into_iter().map(|contender| shifted(self.problem, &gls, contender)));
+            chosen.extend(next.into_iter().map(|contender| shifted(&self.problem, &gls, contender)));
         }
+        chosen.retain(|contender| contender.effect.about.parameters.iter().any(|about| about.role == Role::Amplitude));
+        chosen.extend(self.of_one_size(candidates));
         Some(chosen)
     }
 
-    /// Fits an effect's parameters and the noise in turn, and says how likely that makes what was measured.
+    /// Every effect that comes in one size, at the shape of the grid beside which the map fits best. It moves the map's
+    /// inputs, so that its score beside a map that was trained with it inside says little.
+    fn of_one_size(&self, candidates: &[Candidate]) -> Vec<Contender> {
+        let is_new = |one: &&Candidate| self.known.effects.iter().all(|known| name_of(known) != name_of(&one.effect));
+        let of_one_size = candidates.par_iter().filter(|one| one.amplitudes.is_empty()).filter(is_new);
+        let judged = of_one_size.filter_map(|candidate| {
+            let own = EffectSet::NONE.with(&candidate.effect, &candidate.values);
+            let noises = self.noises.beside(&initial_states(&self.problem, &self.known.and(&own)));
+            let here = self.around(&own, &noises)?;
+            let residuals = here.problem.forward.residuals_beside(&here.fixed, &own);
+            let delta_bic = self.deviance - here.gls(&residuals, &noises)?.deviance();
+            Some(Contender {
+                effect: candidate.effect.clone(),
+                values: candidate.values.clone(),
+                delta_bic,
+                noises: None,
+            })
+        });
+        let mut order: Vec<Contender> = judged.collect();
+        order.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+        best_of_each(order)
+    }
+
+    /// Fits an effect's parameters, the map and the noise in turn, and says how likely that makes what was measured.
     fn contend(&self, contender: Contender) -> Option<Contender> {
         let predicted = contender.effect.about.sum_response.is_predicted();
-        let initial = |own: &EffectSet| initial_states(self.problem, &self.known.and(own));
+        let initial = |own: &EffectSet| initial_states(&self.problem, &self.known.and(own));
         let mut own = contender.alone();
         let mut noises = self.noises.beside(&initial(&own));
+        let mut around: Option<Self> = None;
         for _ in 0..CONTENDER_TURNS {
-            let gls = self.gls(&self.residuals, &noises)?;
+            let scene = around.as_ref().unwrap_or(self);
+            let gls = scene.gls(&scene.residuals, &noises)?;
             let mut residuals;
-            (own, residuals) = fit(self.problem, &self.fixed, &own, &gls, CONTENDER_STEPS);
-            let mut nuisance = widened(self.problem, &self.nuisance, &self.fixed, &own, &residuals);
+            (own, residuals) = fit(&scene.problem, &scene.fixed, &own, &gls, CONTENDER_STEPS);
+            let mut nuisance = widened(&scene.problem, &scene.nuisance, &scene.fixed, &own, &residuals);
             if !predicted {
                 // The sum is as it was; its noise is known.
                 (residuals.sum, nuisance.sum) = (None, None);
             }
-            let fitted = refine(self.problem, &residuals, &nuisance, &noises);
+            let fitted = refine(&scene.problem, &residuals, &nuisance, &noises);
             noises = NoiseModels { sum: fitted.sum.or(noises.sum), ..fitted };
+            around = Some(self.around(&own, &noises)?);
         }
+        let scene = around.as_ref().unwrap_or(self);
         noises = noises.beside(&initial(&own));
         // The noise was fitted with the parameters free: they settle under what it has become.
-        let (own, residuals) =
-            fit(self.problem, &self.fixed, &own, &self.gls(&self.residuals, &noises)?, CONTENDER_STEPS);
+        let gls = scene.gls(&scene.residuals, &noises)?;
+        let (own, residuals) = fit(&scene.problem, &scene.fixed, &own, &gls, CONTENDER_STEPS);
         if predicted {
             // Difference and sum were free to ask for different sizes: what one size leaves is noise.
-            noises = refine(self.problem, &residuals, &self.nuisance, &noises);
+            noises = refine(&scene.problem, &residuals, &scene.nuisance, &noises);
         }
-        let mut deviance = self.gls(&residuals, &noises)?.deviance();
-        if let Some((freed, with)) = self.freed(&residuals, &own, &noises) {
-            let value = self.gls(&freed, &with)?.deviance() + self.problem.parameter_cost();
+        let mut deviance = scene.gls(&residuals, &noises)?.deviance();
+        if let Some((freed, with)) = scene.freed(&residuals, &own, &noises) {
+            let value = scene.gls(&freed, &with)?.deviance() + self.problem.parameter_cost();
             if value < deviance {
                 (deviance, noises) = (value, with);
             }
         }
         let values = own.coefficients.values.concat();
+        if !is_determined(&scene.problem, &self.known.and(&own), &noises) {
+            return None;
+        }
         // Neither side may profit from a noise that was searched for longer.
-        let without = self.gls(&self.residuals, &noises)?.deviance().min(self.deviance);
+        let without = self.deviance_without(&noises)?.min(self.deviance);
         let cost = self.problem.parameter_cost() * contender.effect.free().count() as f64;
         Some(Contender { values, delta_bic: without - deviance - cost, noises: Some(noises), ..contender })
     }
@@ -132,7 +207,7 @@ impl<'a> Scene<'a> {
             let share = score.amplitudes()?[0].clamp(-bound, bound);
             freed.sum = Some(sum.iter().zip(&bias).map(|(sum, bias)| sum + bias * share).collect());
             let sum_only = CellResiduals { delta: Vec::new(), sum: freed.sum.clone() };
-            noises.sum = sum_noise(self.problem, &sum_only, &self.nuisance, noises.sum, &noises.initial);
+            noises.sum = sum_noise(&self.problem, &sum_only, &self.nuisance, noises.sum, &noises.initial);
         }
         Some((freed, noises))
     }
@@ -144,17 +219,16 @@ mod tests {
     use crate::campaign::Campaign;
     use crate::diagnose::example::{Recipe, disturbed, effect, problem};
     use crate::diagnose::problem::{estimate, fixed};
-    use crate::diagnose::thresholds::LEAST_DELTA_BIC;
 
     const NAMES: [&str; 4] = ["warm-up", "thermal-gradient", "thermal-hysteresis", "mode-crossing"];
 
-    fn found(campaign: &Campaign, known: &EffectSet) -> Option<Found> {
+    fn searched(campaign: &Campaign, known: &EffectSet) -> Searched {
         let problem = problem(campaign);
         let shown = NAMES.map(|name| effect(name, campaign));
         let candidates = Candidate::all(&problem, &shown);
         let initial = initial_states(&problem, known);
         let noises = estimate(&problem, &problem.forward.residuals(known), &fixed(&problem, known), &initial);
-        missing(&problem, known, &candidates, &noises)
+        missing(&problem, known, &[], &candidates, &noises).unwrap()
     }
 
     fn with(name: &str, values: &[f64], sum: bool) -> (Campaign, EffectSet) {
@@ -169,7 +243,7 @@ mod tests {
             [("warm-up", [2e-4, 500.0]), ("thermal-gradient", [5e-3, 60.0]), ("thermal-hysteresis", [1e-5, 8.0])]
         {
             let (campaign, _) = with(name, &values, false);
-            let found = found(&campaign, &EffectSet::NONE).unwrap();
+            let found = searched(&campaign, &EffectSet::NONE).found.unwrap();
             let winner = &found.winner;
             assert_eq!(winner.effect.about.name, name);
             assert!(winner.delta_bic > LEAST_DELTA_BIC, "{name}: {}", winner.delta_bic);
@@ -184,17 +258,15 @@ mod tests {
     fn on_noise_alone_nothing_is_worth_naming() {
         for sum in [false, true] {
             let campaign = Recipe { sum, ..Recipe::default() }.campaign();
-            let best = found(&campaign, &EffectSet::NONE).map_or(f64::NEG_INFINITY, |found| found.winner.delta_bic);
-            assert!(best < LEAST_DELTA_BIC, "{best}");
+            let searched = searched(&campaign, &EffectSet::NONE);
+            assert!(searched.found.is_none() && searched.best.is_none_or(|best| best.delta_bic < LEAST_DELTA_BIC));
         }
     }
 
     #[test]
     fn what_is_known_is_not_missed() {
         let (campaign, truth) = with("warm-up", &[2e-4, 500.0], false);
-        let best = found(&campaign, &truth);
-        assert!(best.is_none_or(
-            |found| found.winner.delta_bic < LEAST_DELTA_BIC && found.winner.effect.about.name != "warm-up"
-        ));
+        let searched = searched(&campaign, &truth);
+        assert!(searched.found.is_none() && searched.best.is_none_or(|best| best.effect.about.name != "warm-up"));
     }
 }

@@ -2,12 +2,12 @@
 
 use super::candidate::Candidate;
 use super::contender::{Contender, Found, best_of_each};
-use super::cross_validation::{held_out, recalling};
+use super::cross_validation::{HeldOut, held_out, predicted, recalling};
 use super::screening::screen;
 use crate::diagnose::forward::EffectSet;
-use crate::diagnose::problem::{GlsPair, NoiseModels, Problem, constrained, fit, initial_states};
+use crate::diagnose::problem::{GlsPair, NoiseModels, Problem, carried, constrained, fit, initial_states};
 use crate::diagnose::regression::Measured;
-use crate::diagnose::thresholds::{HALVED, LOWERED, PREDICTED, PREDICTIVE_ASKED, PREDICTIVE_STEPS, WORSE};
+use crate::diagnose::thresholds::{HALVED, LOWERED, NO_WORSE, PREDICTED, PREDICTIVE_ASKED, PREDICTIVE_STEPS, WORSE};
 use rayon::prelude::*;
 
 /// Whether runs that were left out are explained better with the effect than without, or are at least read with half
@@ -17,18 +17,31 @@ use rayon::prelude::*;
 pub fn is_predictive(problem: &Problem, known: &EffectSet, contender: &Contender) -> Option<bool> {
     let with = known.with(&contender.effect, &contender.values);
     let noises = contender.noises.as_ref()?.beside(&initial_states(problem, &with));
-    let fitted = |set: &EffectSet| {
+    let around = carried(problem, &with, &noises)?;
+    let fitted = |problem: &Problem, set: &EffectSet| {
         let (residual, nuisance) = (problem.forward.residuals(set).delta, recalling(problem, set));
         let (cells, initial) = (problem.cells(), &*noises.initial);
         let measured = Measured { cells, initial, residual: &residual, nuisance: &nuisance };
         Some(measured.gls(&noises.delta)?.deviance)
     };
-    let gain = fitted(known)? - fitted(&with)?;
-    let (before, after) = (held_out(problem, known, &noises), held_out(problem, &with, &noises));
+    // The map takes up what it can on both sides.
+    let without = carried(problem, known, &noises)?;
+    let gain = fitted(&without, known)? - fitted(&around, &with)?;
+    let (before, after) = (held_out(&without, known, &noises), held_out(&around, &with, &noises));
+    if problem.unseen.is_some() && is_worse(&predicted(problem, known, &noises), &predicted(&around, &with, &noises)) {
+        return Some(false);
+    }
     let all = after.residual_ug / before.residual_ug;
     let predictable = after.structure_ug() / before.structure_ug();
     let predicted = before.deviance - after.deviance > PREDICTED * gain.max(0.0);
     Some(all < HALVED || predictable < LOWERED || predicted && (all < WORSE || predictable < WORSE))
+}
+
+/// Whether what was left out is read worse, with what is each run's own and without.
+pub fn is_worse(before: &HeldOut, after: &HeldOut) -> bool {
+    after.residual_ug > NO_WORSE * before.residual_ug
+        && after.structure_ug() > NO_WORSE * before.structure_ug()
+        && after.deviance > before.deviance
 }
 
 /// The effect with which what was left out is predicted far better than without, wherever a wander that large hides
@@ -48,18 +61,19 @@ pub fn most_predictive(
     screened.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     let mut screened = best_of_each(screened);
     screened.truncate(PREDICTIVE_ASKED);
-    let before = held_out(problem, known, &small);
+    let before = held_out(&carried(problem, known, &small)?, known, &small);
     let tried = screened.into_par_iter().map(|contender| {
         let (own, _) = fit(problem, &fixed, &contender.alone(), &gls, PREDICTIVE_STEPS);
         let values = own.coefficients.values.concat();
-        let after = held_out(problem, &known.with(&contender.effect, &values), &small);
+        let with = known.with(&contender.effect, &values);
+        let after = held_out(&carried(problem, &with, &small)?, &with, &small);
         let ratio = after.structure_ug() / before.structure_ug();
         // Every part that was left out counts once, however many samples it has.
         let cost = (before.parts as f64).ln() * contender.effect.free().count() as f64;
         let delta_bic = -2.0 * before.parts as f64 * ratio.ln() - cost;
-        (ratio, Contender { values, delta_bic, noises: Some(small.clone()), ..contender })
+        Some((ratio, Contender { values, delta_bic, noises: Some(small.clone()), ..contender }))
     });
-    let mut tried: Vec<(f64, Contender)> = tried.collect();
+    let mut tried: Vec<(f64, Contender)> = tried.flatten().collect();
     tried.retain(|(ratio, contender)| ratio.is_finite() && !contender.is_at_bound(&problem.cells().range_c()));
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (best, _) = tried.first()?;
@@ -68,7 +82,7 @@ pub fn most_predictive(
     }
     let mut order = tried.into_iter().map(|(_, contender)| contender);
     let winner = order.next()?;
-    Some(Found { winner, rivals: order.collect(), at_bound: f64::NEG_INFINITY, noises: noises.clone() })
+    Some(Found { winner, rivals: order.collect(), noises: noises.clone() })
 }
 
 #[cfg(test)]
@@ -98,6 +112,25 @@ mod tests {
         assert_eq!(is_predictive(&without, &none, &contender(&without, &truth, &[2e-4, 500.0])), Some(false));
         let unjudged = Contender { noises: None, ..contender(&with, &truth, &[2e-4, 500.0]) };
         assert_eq!(is_predictive(&with, &none, &unjudged), None);
+    }
+
+    #[test]
+    fn worse_is_what_reads_left_out_runs_worse_whatever_is_their_own_and_is_less_likely() {
+        let held = |residual_ug, predictable_ug, deviance| HeldOut {
+            residual_ug,
+            predictable_ug,
+            deviance,
+            parts: 1,
+            whole_runs: true,
+        };
+        let before = held(50.0, 20.0, 1000.0);
+        assert!(is_worse(&before, &held(51.0, 20.5, 1001.0)));
+        // The offset of one run by itself, or a hundredth, is chance.
+        for after in
+            [held(60.0, 20.0, 1001.0), held(50.0, 30.0, 1001.0), held(50.4, 20.1, 1001.0), held(60.0, 30.0, 900.0)]
+        {
+            assert!(!is_worse(&before, &after));
+        }
     }
 
     #[test]

@@ -27,9 +27,9 @@ pub fn starts(
         let chosen = choose(choice, campaign, &runs).ok()?;
         let start = choice.start.clone().or_else(|| {
             let candidates = Candidate::all(&problem, std::slice::from_ref(&chosen));
-            let found = missing(&problem, &known, &candidates, &noises)?;
-            noises = found.winner.noises.unwrap_or_else(|| noises.clone());
-            Some(found.winner.values)
+            let best = missing(&problem, &known, &[], &candidates, &noises)?.best?;
+            noises = best.noises.unwrap_or_else(|| noises.clone());
+            Some(best.values)
         });
         if let Some(values) = &start {
             known = known.with(&chosen, values);

@@ -4,23 +4,29 @@ use super::found::Findings;
 use crate::diagnose::answer::{Estimate, Finding};
 use crate::diagnose::design::separate;
 use crate::diagnose::forward::EffectSet;
-use crate::diagnose::problem::{GlsPair, NoiseModels, Problem, fixed};
-use crate::diagnose::regression::Score;
-use crate::diagnose::selection::{Found, held_out};
+use crate::diagnose::problem::{Problem, carried};
+use crate::diagnose::selection::{Found, predicted, standard_uncertainties};
 use crate::diagnose::thresholds::{CONFOUNDED, CONFOUNDED_SHARE};
 use firmware_core::effect::Role;
-use nalgebra::DVector;
 use std::collections::BTreeMap;
 
-/// What was found, from the residual before it on, µg.
-pub fn findings(problem: &Problem, start: &EffectSet, found: &Findings, mut residual_ug: f64) -> Vec<Finding> {
-    let sigmas = sigmas(problem, &found.known, &found.noises);
+/// What was found, from the residual of the model as it is on, µg: it falls as much as that which is predicted without
+/// training, `own_ug` where nothing is found.
+pub fn findings(
+    problem: &Problem,
+    start: &EffectSet,
+    found: &Findings,
+    [mut residual_ug, own_ug]: [f64; 2],
+) -> Vec<Finding> {
+    let unit = residual_ug / own_ug;
+    let sigmas = standard_uncertainties(&found.problem, &found.known, &found.noises);
     let mut known = start.clone();
     let mut findings = Vec::new();
     for (index, step) in found.steps.iter().enumerate() {
         let at = start.effects.len() + index;
         known = known.with(&found.known.effects[at], &found.known.coefficients.values[at]);
-        let after_ug = held_out(problem, &known, &found.noises).residual_ug;
+        let around = if index + 1 == found.steps.len() { None } else { carried(problem, &known, &found.noises) };
+        let after_ug = predicted(around.as_ref().unwrap_or(&found.problem), &known, &found.noises).residual_ug * unit;
         let name = step.winner.effect.about.name;
         let confounded_with = confounded(step);
         findings.push(Finding {
@@ -49,29 +55,4 @@ fn parameters(known: &EffectSet, sigmas: &[Vec<f64>], at: usize) -> BTreeMap<Str
     each.filter(|((about, _), _)| about.role != Role::Origin)
         .map(|((about, value), sigma)| (about.name.to_owned(), Estimate { value: *value, sigma: *sigma }))
         .collect()
-}
-
-/// Standard uncertainties of all coefficients, effect by effect.
-fn sigmas(problem: &Problem, known: &EffectSet, noises: &NoiseModels) -> Vec<Vec<f64>> {
-    let parameters = known.coefficients.to_parameters(&known.effects);
-    let forward = &problem.forward;
-    let residuals = forward.residuals(known);
-    let gls = GlsPair::new(problem, &residuals, &fixed(problem, known), noises);
-    let covariance = gls.and_then(|gls| {
-        let jacobian = forward.jacobian(forward.no_effects(), known, &residuals);
-        let normal = gls.normal(&jacobian.delta, jacobian.sum.as_ref());
-        // Where the data say nothing of a parameter, its bounds do.
-        Score { right: DVector::zeros(normal.nrows()), normal }.covariance()
-    });
-    let sigma = |i: usize| covariance.as_ref().map_or(0.0, |covariance| covariance[(i, i)].max(0.0).sqrt());
-    // One sigma up or down in the optimiser's parameters, seen in the coefficients' own units: at a bound, one is nothing.
-    let moved = |sign: f64| {
-        known.at(&parameters.iter().enumerate().map(|(i, value)| value + sign * sigma(i)).collect::<Vec<_>>())
-    };
-    let away = |moved: &[f64], here: &[f64]| moved.iter().zip(here).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>();
-    let [up, down] = [moved(1.0), moved(-1.0)].map(|moved| moved.coefficients.values);
-    let larger = |((up, down), here): ((&Vec<f64>, &Vec<f64>), &Vec<f64>)| {
-        away(up, here).into_iter().zip(away(down, here)).map(|(up, down)| up.max(down)).collect()
-    };
-    up.iter().zip(&down).zip(&known.coefficients.values).map(larger).collect()
 }

@@ -146,17 +146,39 @@ fn many_candidates_and_those_of_one_run_score_as_each_does_by_itself() {
 }
 
 #[test]
-fn a_compressed_nuisance_absorbs_the_same_in_fewer_columns() {
+fn a_nuisance_in_the_directions_that_data_tell_of_absorbs_the_same_in_fewer_columns() {
     with_cells(|problem, case| {
         // Each twice, and one of which the data say nothing.
         let faint: Columns = case.residual.iter().map(|run| run * 1e-6).collect();
         let twice = joined([&case.nuisance, &case.nuisance, &faint]);
-        let few = compressed(problem.cells(), &noise(), &twice);
+        let directions = directions(problem.cells(), &noise(), &twice);
+        let few: Columns = twice.iter().map(|run| run * &directions).collect();
         assert_eq!(width(&few), width(&case.nuisance));
         let with = |nuisance: &Columns| {
             Gls::new(problem.cells(), &InitialStates::default(), &noise(), &case.residual, nuisance).unwrap().deviance
         };
         assert!((with(&few) - with(&twice)).abs() < 2e-3, "{} {}", with(&few), with(&twice));
+    });
+}
+
+#[test]
+fn what_is_absorbed_again_and_again_is_what_fits_to_what_was_left_each_time_absorb() {
+    with_cells(|problem, case| {
+        let none = InitialStates::default();
+        let mut residual = case.residual.clone();
+        let gls = |residual: &Columns| Gls::new(problem.cells(), &none, &noise(), residual, &case.nuisance).unwrap();
+        let thrice = gls(&residual).absorbed(3);
+        if thrice.is_empty() {
+            return;
+        }
+        let mut sum = thrice.clone() * 0.0;
+        for _ in 0..3 {
+            let once = gls(&residual).absorbed(1);
+            residual.iter_mut().zip(&case.nuisance).for_each(|(run, nuisance)| *run -= nuisance * &once);
+            sum += once;
+        }
+        assert!((&sum - &thrice).amax() < 1e-9 * thrice.amax(), "{sum} {thrice}");
+        assert!((gls(&case.residual).absorbed(1) - &thrice).amax() > 1e-6 * thrice.amax());
     });
 }
 
