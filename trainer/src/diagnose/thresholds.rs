@@ -115,6 +115,8 @@ pub const NOTHING_UG: f64 = 1e-9;
 pub const LEAST_DELTA_BIC: f64 = 25.0;
 /// An amplitude that differs from nothing by fewer standard uncertainties is not known to be there.
 pub const SIGNIFICANT_SIGMA: f64 = 3.0;
+/// An effect of which less than this is left from one sample to the next remembers nothing that the campaign could show.
+pub const REMEMBERED: f64 = 0.02;
 /// Effects with less are compared with structures that no effect has before they are believed.
 pub const WEAK_DELTA_BIC: f64 = 400.0;
 /// Most findings.

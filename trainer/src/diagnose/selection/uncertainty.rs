@@ -3,7 +3,7 @@
 use crate::diagnose::forward::EffectSet;
 use crate::diagnose::problem::{GlsPair, NoiseModels, Problem, fixed};
 use crate::diagnose::regression::Score;
-use crate::diagnose::thresholds::{AT_BOUND, SIGNIFICANT_SIGMA};
+use crate::diagnose::thresholds::{AT_BOUND, REMEMBERED, SIGNIFICANT_SIGMA};
 use firmware_core::effect::{Parameter, Role};
 use nalgebra::DVector;
 
@@ -33,7 +33,7 @@ pub fn standard_uncertainties(problem: &Problem, known: &EffectSet, noises: &Noi
 }
 
 /// Whether the last effect of a set is determined: one of its amplitudes lies so many standard uncertainties from nothing (of
-/// one that comes in one size, its time constant), and what it remembers lasts longer than the time between two samples.
+/// one that comes in one size, its time constant), and something of what it remembers is left at the next sample.
 pub fn is_determined(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -> bool {
     let sigmas = standard_uncertainties(problem, set, noises);
     let (Some(effect), Some(values), Some(sigmas)) =
@@ -53,7 +53,7 @@ pub fn is_determined(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -
     let is_fleeting = |((about, value), _): ((&Parameter, &f64), &f64)| {
         let is_time = about.role == Role::Shape && about.unit == "s";
         // Where nothing at all is a sound limit, it is as good as any.
-        is_time && *value < interval_s && !about.sound_limit.is_low()
+        is_time && f64::exp(-interval_s / value) < REMEMBERED && !about.sound_limit.is_low()
     };
     significant && !parameters().any(is_fleeting)
 }
@@ -78,12 +78,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_remembered_must_last_from_one_sample_to_the_next() {
+    fn something_of_what_is_remembered_must_be_left_at_the_next_sample() {
         let campaign = Recipe::default().campaign();
         let problem = problem(&campaign);
         let noises = white(&problem, &EffectSet::NONE, 5.0);
         assert!((problem.cells().interval_s() - STEP_S).abs() < 1e-9);
-        for (tau_s, determined) in [(0.5 * STEP_S, false), (3.0 * STEP_S, true)] {
+        for (tau_s, determined) in [(0.2 * STEP_S, false), (0.5 * STEP_S, true), (3.0 * STEP_S, true)] {
             let set = EffectSet::NONE.with(&effect("thermal-lag", &campaign), &[tau_s]);
             assert_eq!(is_determined(&problem, &set, &noises), determined, "{tau_s}");
         }
