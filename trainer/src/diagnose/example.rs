@@ -180,6 +180,13 @@ pub fn disturbed(mut campaign: Campaign, set: &EffectSet) -> Campaign {
     campaign
 }
 
+/// A campaign with a bias after power-on (amplitude, g, and time constant, s), and that effect.
+pub fn warmed_up(values: &[f64; 2]) -> (Campaign, EffectSet) {
+    let still = Recipe::default().campaign();
+    let truth = EffectSet::NONE.with(&effect("warm-up", &still), values);
+    (disturbed(still, &truth), truth)
+}
+
 /// The campaign before the judge.
 pub fn problem(campaign: &Campaign) -> Problem<'_> {
     let yardstick = Yardstick::of_model(&model(), campaign).unwrap();

@@ -100,18 +100,11 @@ impl levenberg_marquardt::Problem for Fit<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::Campaign;
-    use crate::diagnose::example::{Recipe, disturbed, effect, problem, white};
+    use crate::diagnose::example::{Recipe, disturbed, effect, problem, warmed_up, white};
     use crate::diagnose::problem::{fixed, widened};
 
     /// A bias after power-on of 200 µg that fades in 400 s.
     const TRUTH: [f64; 2] = [200e-6, 400.0];
-
-    fn warmed_up() -> (Campaign, EffectSet) {
-        let campaign = Recipe::default().campaign();
-        let truth = EffectSet::NONE.with(&effect("warm-up", &campaign), &TRUTH);
-        (disturbed(campaign, &truth), truth)
-    }
 
     fn fitted(problem: &Problem, start: &EffectSet, steps: usize) -> (EffectSet, CellResiduals, GlsPair) {
         let noises = white(problem, start, 5.0);
@@ -130,7 +123,7 @@ mod tests {
 
     #[test]
     fn an_effect_is_found_again_within_its_uncertainty_from_far_off() {
-        let (campaign, truth) = warmed_up();
+        let (campaign, truth) = warmed_up(&TRUTH);
         let problem = problem(&campaign);
         let start = EffectSet::NONE.with(&truth.effects[0], &[40e-6, 1500.0]);
         let (found, residuals, gls) = fitted(&problem, &start, 40);
@@ -147,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_fit_from_the_truth_stays_there_and_is_no_worse() {
-        let (campaign, truth) = warmed_up();
+        let (campaign, truth) = warmed_up(&TRUTH);
         let problem = problem(&campaign);
         let (found, residuals, gls) = fitted(&problem, &truth, 12);
         let sigma = uncertainties(&problem, &truth, &gls);
@@ -160,7 +153,7 @@ mod tests {
 
     #[test]
     fn no_steps_leave_the_start_and_a_step_from_there_gains() {
-        let (campaign, truth) = warmed_up();
+        let (campaign, truth) = warmed_up(&TRUTH);
         let problem = problem(&campaign);
         let start = EffectSet::NONE.with(&truth.effects[0], &[100e-6, 600.0]);
         let (unmoved, before, gls) = fitted(&problem, &start, 0);
@@ -187,7 +180,7 @@ mod tests {
 
     #[test]
     fn the_free_parameters_widen_what_may_adapt_to_what_they_can_do() {
-        let (campaign, truth) = warmed_up();
+        let (campaign, truth) = warmed_up(&TRUTH);
         let problem = problem(&campaign);
         let start = EffectSet::NONE.with(&truth.effects[0], &[150e-6, 400.0]);
         let (residuals, fixed) = (problem.forward.residuals(&start), fixed(&problem, &start));

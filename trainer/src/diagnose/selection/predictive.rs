@@ -89,13 +89,7 @@ pub fn most_predictive(
 mod tests {
     use super::*;
     use crate::campaign::Campaign;
-    use crate::diagnose::example::{Recipe, disturbed, effect, problem, white};
-
-    fn warmed_up() -> (Campaign, EffectSet) {
-        let still = Recipe::default().campaign();
-        let truth = EffectSet::NONE.with(&effect("warm-up", &still), &[2e-4, 500.0]);
-        (disturbed(still, &truth), truth)
-    }
+    use crate::diagnose::example::{Recipe, effect, problem, warmed_up, white};
 
     fn contender(problem: &Problem, set: &EffectSet, values: &[f64]) -> Contender {
         let noises = Some(white(problem, &EffectSet::NONE, 5.0));
@@ -104,7 +98,7 @@ mod tests {
 
     #[test]
     fn what_is_there_predicts_other_runs_and_what_is_not_there_does_not() {
-        let (campaign, truth) = warmed_up();
+        let (campaign, truth) = warmed_up(&[2e-4, 500.0]);
         let still = Recipe::default().campaign();
         let none = EffectSet::NONE;
         let (with, without) = (problem(&campaign), problem(&still));
@@ -135,7 +129,7 @@ mod tests {
 
     #[test]
     fn the_effect_that_halves_what_is_left_out_is_named_and_none_on_noise() {
-        let (campaign, truth) = warmed_up();
+        let (campaign, truth) = warmed_up(&[2e-4, 500.0]);
         let still = Recipe::default().campaign();
         let named = |campaign: &Campaign| {
             let problem = problem(campaign);

@@ -56,14 +56,12 @@ fn judged(problem: &Problem, candidate: &Candidate, score: &Score) -> Contender 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{Recipe, disturbed, effect, problem, white};
+    use crate::diagnose::example::{Recipe, disturbed, effect, problem, warmed_up, white};
     use crate::diagnose::problem::fixed;
 
     #[test]
     fn each_effect_has_its_best_shape_and_amplitude_and_the_known_ones_are_left_out() {
-        let still = Recipe::default().campaign();
-        let truth = EffectSet::NONE.with(&effect("warm-up", &still), &[2e-4, 500.0]);
-        let campaign = disturbed(still, &truth);
+        let (campaign, truth) = warmed_up(&[2e-4, 500.0]);
         let (problem, none) = (problem(&campaign), EffectSet::NONE);
         let shown = ["warm-up", "thermal-lag", "thermal-gradient"].map(|name| effect(name, &campaign));
         let candidates = Candidate::all(&problem, &shown);
