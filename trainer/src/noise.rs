@@ -96,7 +96,7 @@ fn pseudo_residual_g(three: &[Point]) -> f64 {
 }
 
 /// Of each run the rows at which something new was read, in order: a logger may be faster than the sensor.
-pub fn written_once(runs: &[&[Row]]) -> Vec<Vec<usize>> {
+fn written_once(runs: &[&[Row]]) -> Vec<Vec<usize>> {
     let (mut pairs, mut same_signal, mut same) = (0.0, 0.0, 0.0);
     for pair in runs.iter().flat_map(|rows| rows.windows(2)) {
         pairs += 1.0;

@@ -82,14 +82,7 @@ impl<'a> Cells<'a> {
 
     /// Time between two samples where they come fastest, s: the least of the runs' medians; 0 where there are no two.
     pub fn interval_s(&self) -> f64 {
-        let median = |run: &RunCells| {
-            let time_us = |row: &crate::campaign::Row| row.sample.time_us;
-            let mut steps: Vec<u64> =
-                run.run.rows.windows(2).map(|pair| time_us(&pair[1]).saturating_sub(time_us(&pair[0]))).collect();
-            let middle = steps.len() / 2;
-            (!steps.is_empty()).then(|| *steps.select_nth_unstable(middle).1 as f64 * 1e-6)
-        };
-        self.runs.iter().filter_map(median).min_by(f64::total_cmp).unwrap_or(0.0)
+        self.runs.iter().filter_map(|run| run.run.sample_interval_s()).min_by(f64::total_cmp).unwrap_or(0.0)
     }
 
     /// Number of cells.

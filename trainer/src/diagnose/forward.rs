@@ -17,15 +17,17 @@ pub(super) use static_map::StaticMap;
 pub(super) use sum_channel::SumChannel;
 
 use super::cells::{Cells, Columns, difference};
-use crate::diagnose::thresholds::SILICON_G_PER_C;
+use crate::diagnose::thresholds::{LEAST_SAMPLE_UG, SILICON_G_PER_C};
+use crate::noise::sample_sigma_g;
 use contributions::contributions;
 use residuals::residuals_beside;
+use std::sync::Arc;
 
 /// The measurements in cells, and what is taken for their cause.
 #[derive(Clone)]
 pub(super) struct Forward<'a> {
     /// The cells.
-    pub cells: Cells<'a>,
+    pub cells: Arc<Cells<'a>>,
     /// The static map.
     pub map: StaticMap,
     /// The sum of the frequencies, if it was measured.
@@ -36,7 +38,7 @@ pub(super) struct Forward<'a> {
 
 impl<'a> Forward<'a> {
     /// Of a map and what was measured.
-    pub fn new(cells: Cells<'a>, map: StaticMap, sum: Option<SumChannel>) -> Self {
+    pub fn new(cells: Arc<Cells<'a>>, map: StaticMap, sum: Option<SumChannel>) -> Self {
         let none = FixedEffects::new(&cells, &map, sum.as_ref(), &EffectSet::NONE);
         Self { cells, map, sum, none }
     }
@@ -65,6 +67,14 @@ impl<'a> Forward<'a> {
     /// run cells × 1.
     pub fn residual_in_ug(&self, cells: &Cells, set: &EffectSet) -> Columns {
         self.map.residual_ug(cells, &contributions(cells, set))
+    }
+
+    /// Scatter of what these effects leave from sample to sample, µg; `None` where neighbours share a state by chance at most.
+    pub fn sample_ug(&self, set: &EffectSet) -> Option<f64> {
+        let residuals = self.residual_in_ug(&self.cells.by_sample(), set);
+        let all: Vec<Vec<f64>> = residuals.iter().map(|run| run.iter().copied().collect()).collect();
+        let runs = self.cells.runs.iter().map(|run| run.run);
+        sample_sigma_g(runs.zip(&all)).map(|sigma| sigma.max(LEAST_SAMPLE_UG))
     }
 
     /// Derivatives of what these effects leave beside fixed ones, by their free parameters, from where they leave `base`.

@@ -47,7 +47,9 @@ impl<'a> Problem<'a> {
 
     /// The same problem with the map as it was trained.
     pub fn as_trained(&self) -> Self {
-        Self { forward: self.forward.with_map(self.forward.map.as_trained()), ..self.clone() }
+        let mut plain = self.clone();
+        plain.forward = self.forward.with_map(self.forward.map.as_trained());
+        plain
     }
 
     /// What each parameter costs in −2 log likelihood: the logarithm of the number of cells (BIC; Schwarz 1978).

@@ -40,7 +40,7 @@ pub(super) fn judge(
     if unseen.contains(&true) && unseen.contains(&false) {
         problem.unseen = Some(unseen.to_vec());
     }
-    let before = as_it_is(&problem, &in_model, &first_noises(&problem, &in_model), unseen);
+    let before = as_it_is(&problem, &in_model, unseen);
     let (problem, start) = settled(problem, in_model)?;
     let shown = with_channels(campaign);
     let noises = first_noises(&problem, &start);
@@ -130,15 +130,14 @@ impl<'a> Driver<'a> {
                 break;
             }
             dropped.extend(self.prune(&mut found).ok_or(DiagnoseError::NoNoise)?);
-            candidates = self.candidates(&found).ok_or(DiagnoseError::NoNoise)?;
+            candidates = self.candidates(&found.problem, &found.known, &found.noises).ok_or(DiagnoseError::NoNoise)?;
         }
         Ok(found)
     }
 
-    /// What may still be missing, as it looks from here.
-    fn candidates(&self, found: &Findings) -> Option<Vec<Candidate>> {
-        let all = Candidate::all(&found.problem, self.shown);
-        Some(Screening::new(&found.problem, &found.known, all, &found.noises)?.visible)
+    /// What may still be missing beside these effects, as it looks from there.
+    fn candidates(&self, problem: &Problem, known: &EffectSet, noises: &NoiseModels) -> Option<Vec<Candidate>> {
+        Some(Screening::new(problem, known, Candidate::all(problem, self.shown), noises)?.visible)
     }
 
     /// The noise with the winner.
@@ -228,8 +227,8 @@ impl<'a> Driver<'a> {
         if !weak || !is_structured(&found.problem, &found.noises.delta) {
             return None;
         }
-        let at_start = Findings::nothing_yet(self.problem.clone(), self.start.clone(), found.noises.clone());
-        let step = most_predictive(self.problem, self.start, &self.candidates(&at_start)?, &found.noises)?;
+        let candidates = self.candidates(self.problem, self.start, &found.noises)?;
+        let step = most_predictive(self.problem, self.start, &candidates, &found.noises)?;
         let known = self.start.with(&step.winner.effect, &step.winner.values);
         let problem = carried(self.problem, &known, &found.noises)?;
         let noises = self.refined(&problem, &known, &found.noises);
@@ -251,20 +250,18 @@ impl<'a> Driver<'a> {
         // Predicted as well as the noise without the findings allows.
         let noises = found.steps.first().map_or(&found.noises, |step| &step.noises).beside(&found.noises.initial);
         let own = predicted(problem, start, &noises);
+        let after = (!found.steps.is_empty()).then(|| predicted(&found.problem, &found.known, &found.noises));
         let before = self.before.as_ref().unwrap_or(&own);
         let (residual_ug, before_ug) = (before.residual_ug, before.structure_ug());
         // What training leaves will fall as much as what is predicted without training falls.
         let ratio = |after: &HeldOut| after.structure_ug() / own.structure_ug();
-        let after_ug = match found.steps.is_empty() {
-            true => before_ug,
-            false => before_ug * ratio(&predicted(&found.problem, &found.known, &found.noises)),
-        };
+        let after_ug = after.as_ref().map_or(before_ug, |after| before_ug * ratio(after));
         let lack_of_fit = lack_of_fit(&found.problem, &found.known, &found.noises, &campaign.channels);
         let unexplained =
             structured || found.at_bound > SURELY_AT_BOUND || found.formula.is_some() || !lack_of_fit.is_empty();
         let dependences =
             dependences((problem, start), (&found.problem, &found.known), &found.noises, &campaign.channels);
-        let findings = findings(problem, start, &found, [residual_ug, own.residual_ug]);
+        let findings = findings(problem, start, &found, residual_ug, [&own, after.as_ref().unwrap_or(&own)]);
         let verdict = match (findings.is_empty(), unexplained) {
             (true, true) => Verdict::Unexplained,
             (true, false) => Verdict::NothingMissing,

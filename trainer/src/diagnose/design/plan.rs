@@ -26,6 +26,7 @@ use firmware_core::effect::{self, About};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// A recording that might be made: what chamber and turntable would do, row by row. Its frequencies don't matter.
@@ -178,7 +179,8 @@ pub fn plan(
         let joint = joint(model, campaign, &of_g.campaign(&recording.campaign), &yardstick);
         let mut new = problem(model, &joint, &yardstick)?;
         // The next training will know how coarsely the recording is sampled, and how long its pauses are.
-        new.forward.cells.max_gap_us = new.forward.cells.max_gap_us.max(recording.campaign.max_gap_us());
+        let cells = Arc::make_mut(&mut new.forward.cells);
+        cells.max_gap_us = cells.max_gap_us.max(recording.campaign.max_gap_us());
         // Planned rows have no noise to estimate it from.
         new.sample_ug = old.sample_ug;
         if let (Some(new), Some(old)) = (&mut new.forward.sum, &old.forward.sum) {

@@ -57,7 +57,7 @@ impl Sensor {
     fn new(model: &Model, measured: &Campaign, yardstick: &Yardstick) -> Self {
         let scale = scale(model);
         let sum = sum_map(measured, &scale);
-        Self { scale, map: StaticMap::new(model, yardstick, false), sum }
+        Self { scale, map: StaticMap::new(model, yardstick), sum }
     }
 
     /// The run with the frequencies that this sensor would have; their sum only if it was measured before.

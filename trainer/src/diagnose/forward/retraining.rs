@@ -59,7 +59,7 @@ mod tests {
         let map = &problem.forward.map;
         let inputs = problem.forward.inputs(&EffectSet::NONE);
         let yardstick = Yardstick::of_model(&model(), &campaign).unwrap();
-        let still = StaticMap::new(&model(), &yardstick, true);
+        let still = StaticMap::new(&model(), &yardstick).of_still(true);
         assert_eq!(width(&of_retraining(&still, &inputs)), MAP_POWERS.1 + 1);
         let all = width(&of_smooth_map(map, problem.cells()));
         assert_eq!(width(&of_retraining(map, &inputs)), all + 4 * HIDDEN);

@@ -3,10 +3,9 @@
 use super::basis;
 use super::contributions::{Contributions, moved};
 use crate::diagnose::cells::{Cell, Cells, Columns, RunCells};
-use crate::diagnose::thresholds::LEAST_SAMPLE_UG;
 use crate::fit::effects::Contribution;
 use crate::model::Model;
-use crate::noise::{rms, sample_sigma_g};
+use crate::noise::rms;
 use crate::yardstick::Yardstick;
 use firmware_core::{Network, Scale};
 use nalgebra::DMatrix;
@@ -33,7 +32,7 @@ pub struct StaticMap {
 
 impl StaticMap {
     /// The static map of `model`, its readings in the yardstick's units; its effects are not part of it.
-    pub fn new(model: &Model, yardstick: &Yardstick, still: bool) -> Self {
+    pub fn new(model: &Model, yardstick: &Yardstick) -> Self {
         let (network, scale) = (Network::new(&model.weights()), Scale::new(&model.scaling.to_wire()));
         Self {
             weights: model.weights(),
@@ -41,9 +40,14 @@ impl StaticMap {
             scale,
             model: model.clone(),
             factor: yardstick.factor(),
-            still,
+            still: false,
             added: Vec::new(),
         }
+    }
+
+    /// The same map, its slope stated and not learnt if the sensor is still.
+    pub fn of_still(self, still: bool) -> Self {
+        Self { still, ..self }
     }
 
     /// What the static map reads at the scaled inputs, g.
@@ -112,12 +116,6 @@ impl StaticMap {
     fn cell_residual_ug(&self, cells: &Cells, cell: &Cell, contribution: &Contribution) -> f64 {
         let [x, t] = moved(cells, cell, contribution);
         (self.reading_g(x, t) - contribution.bias_g - cell.level_g) * UG
-    }
-
-    /// Scatter of the residual from sample to sample, µg, from that of every row, µg: of each run rows × 1.
-    pub fn sample_ug(cells: &Cells, residuals: &Columns) -> Option<f64> {
-        let all: Vec<Vec<f64>> = residuals.iter().map(|run| run.iter().copied().collect()).collect();
-        sample_sigma_g(cells.runs.iter().map(|run| run.run).zip(&all)).map(|sigma| sigma.max(LEAST_SAMPLE_UG))
     }
 
     /// RMS slope over temperature at a given frequency difference, µg/°C.

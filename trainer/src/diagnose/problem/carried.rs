@@ -6,7 +6,7 @@
 use super::Problem;
 use super::noise_models::NoiseModels;
 use crate::diagnose::cells::Columns;
-use crate::diagnose::forward::{EffectSet, Inputs, StaticMap};
+use crate::diagnose::forward::{EffectSet, Inputs};
 use crate::diagnose::regression::Gls;
 
 /// How often what is expected of the map is learnt anew: training has no such expectation.
@@ -21,16 +21,15 @@ pub fn carried<'a>(problem: &Problem<'a>, set: &EffectSet, noises: &NoiseModels)
     let gls = Gls::new(problem.cells(), &noises.initial, &noises.delta, &residual, &basis)?;
     let amplitudes = -(&problem.directions * gls.absorbed(ROUNDS));
     let forward = problem.forward.with_map(problem.forward.map.with(amplitudes.iter().copied()));
-    Some(Problem { forward, basis, inputs, ..problem.clone() })
+    let (directions, unseen) = (problem.directions.clone(), problem.unseen.clone());
+    Some(Problem { forward, basis, directions, inputs, unseen, ..*problem })
 }
 
 /// The same problem with the noise of a sample as it is beside these effects: a bent map multiplies the thermometer's
 /// noise by another slope.
 pub fn rescaled<'a>(problem: Problem<'a>, set: &EffectSet) -> Problem<'a> {
-    let cells = problem.cells();
-    let residuals = problem.forward.residual_in_ug(&cells.by_sample(), set);
-    let sample_ug = StaticMap::sample_ug(cells, &residuals).unwrap_or(problem.sample_ug);
-    let ug_per_c = problem.forward.map.ug_per_c(cells);
+    let sample_ug = problem.forward.sample_ug(set).unwrap_or(problem.sample_ug);
+    let ug_per_c = problem.forward.map.ug_per_c(problem.cells());
     Problem { sample_ug, ug_per_c, ..problem }
 }
 
@@ -41,7 +40,7 @@ fn basis_at(problem: &Problem, inputs: &Inputs) -> Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{Moment, Recipe, disturbed, effect, problem, white};
+    use crate::diagnose::example::{Moment, Recipe, disturbed, effect, problem, warmed_up, white};
 
     /// An instrument whose bias bends over temperature by 300 µg, which the line doesn't know.
     fn bent(moment: &Moment) -> f64 {
@@ -81,9 +80,7 @@ mod tests {
 
     #[test]
     fn the_noise_of_a_sample_is_measured_beside_the_effects() {
-        let still = Recipe::default().campaign();
-        let truth = EffectSet::NONE.with(&effect("warm-up", &still), &[2e-4, 500.0]);
-        let campaign = disturbed(still, &truth);
+        let (campaign, truth) = warmed_up(&[2e-4, 500.0]);
         let problem = problem(&campaign);
         let here = rescaled(problem.clone(), &truth);
         assert!(

@@ -11,6 +11,7 @@ use crate::effect_choice::{EffectChoice, choose};
 use crate::fit::dataset::InputScale;
 use crate::model::Model;
 use crate::yardstick::Yardstick;
+use std::sync::Arc;
 
 /// What the campaign is measured with.
 pub fn yardstick(model: &Model, campaign: &Campaign) -> Result<Yardstick, DiagnoseError> {
@@ -21,18 +22,17 @@ const UNUSABLE: &str = "references and readings are too large or too small for n
 
 /// Model and measurements before the judge, in the units of `yardstick`, as `campaign` is.
 pub fn problem<'a>(model: &Model, campaign: &'a Campaign, yardstick: &Yardstick) -> Result<Problem<'a>, DiagnoseError> {
-    let map = StaticMap::new(model, yardstick, false);
+    let map = StaticMap::new(model, yardstick);
     let max_gap_us = model.domain.max_gap_us;
     let cells = Cells::new(campaign, scale(model), max_gap_us, map.reach_g(), yardstick.gravity);
-    let map = StaticMap::new(model, yardstick, cells.is_still());
+    let map = map.of_still(cells.is_still());
     let ug_per_c = map.ug_per_c(&cells);
     if !map.scale_factor_hz_per_g(&cells).is_finite() {
         return Err(DiagnoseError::Numbers(FLAT));
     }
     let sum = SumChannel::new(&cells);
-    let forward = Forward::new(cells, map, sum);
-    let alone = forward.residual_in_ug(&forward.cells.by_sample(), &EffectSet::NONE);
-    let sample_ug = StaticMap::sample_ug(&forward.cells, &alone).ok_or(DiagnoseError::NoNoise)?;
+    let forward = Forward::new(Arc::new(cells), map, sum);
+    let sample_ug = forward.sample_ug(&EffectSet::NONE).ok_or(DiagnoseError::NoNoise)?;
     if !(sample_ug.is_finite() && ug_per_c.is_finite()) {
         return Err(DiagnoseError::Numbers(ABSURD));
     }

@@ -6,7 +6,7 @@
 use crate::diagnose::cells::{Cell, Columns, RunCells, product, stacked};
 use crate::diagnose::forward::EffectSet;
 use crate::diagnose::noise::{InitialStates, Shares, Whitening};
-use crate::diagnose::problem::{NoiseModels, Problem, ROUNDS, fixed};
+use crate::diagnose::problem::{NoiseModels, Problem, ROUNDS, fixed, initial_states};
 use crate::diagnose::thresholds::{FEW_RUNS, LEAST_OF_ITS_OWN, PARTS_OF_FEW};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::ops::Range;
@@ -37,7 +37,7 @@ impl HeldOut {
 /// Predicts each run from all the others, beginning with the map that training made.
 pub fn held_out(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -> HeldOut {
     let whole_runs = problem.cells().runs.len() >= FEW_RUNS;
-    HeldOut { whole_runs, ..left_out(&problem.as_trained(), set, noises, folds(problem), ROUNDS) }
+    HeldOut { whole_runs, ..left_out(problem, set, noises, folds(problem)) }
 }
 
 /// Predicts the runs that training never saw from those that it saw, beginning with the map that it made; where it saw all
@@ -46,16 +46,16 @@ pub fn predicted(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -> He
     let Some(unseen) = &problem.unseen else { return held_out(problem, set, noises) };
     let runs = problem.cells().runs.iter().enumerate().filter(|(index, _)| unseen[*index]);
     let fold = runs.map(|(index, run)| (index, 0..run.cells.len())).collect();
-    let as_trained = problem.as_trained();
-    HeldOut { whole_runs: true, ..left_out(&as_trained, set, noises, vec![fold], ROUNDS) }
+    HeldOut { whole_runs: true, ..left_out(problem, set, noises, vec![fold]) }
 }
 
 /// Parts of runs that are left out together: which run, and which of its cells.
 type Fold = Vec<(usize, Range<usize>)>;
 
-/// Each fold predicted from all others; what is expected of the map and of parameters is learnt so many times, each time
-/// from where it was found before.
-fn left_out(problem: &Problem, set: &EffectSet, noises: &NoiseModels, folds: Vec<Fold>, rounds: usize) -> HeldOut {
+/// Each fold predicted from all others, beginning with the map that training made: what is expected of it and of
+/// parameters is learnt so many times, each time from where it was found before.
+fn left_out(problem: &Problem, set: &EffectSet, noises: &NoiseModels, folds: Vec<Fold>) -> HeldOut {
+    let problem = &problem.as_trained();
     let (residual, nuisance) = (problem.forward.residuals(set).delta, recalling(problem, set));
     let whitening = Whitening::new(problem.cells(), &noises.initial, &noises.delta);
     let (white_residual, white_nuisance) = (whitening.of(&residual), whitening.of(&nuisance));
@@ -72,7 +72,7 @@ fn left_out(problem: &Problem, set: &EffectSet, noises: &NoiseModels, folds: Vec
         let Some(factor) = Cholesky::new(&normal - product(&here, &here)) else { continue };
         let first = factor.solve(&(&right - product(&here, &white)));
         let learnt = std::iter::successors(Some(first), |last| Some(factor.solve(last)));
-        let learnt = learnt.take(rounds).fold(DMatrix::zeros(normal.nrows(), 1), |sum, next| sum + next);
+        let learnt = learnt.take(ROUNDS).fold(DMatrix::zeros(normal.nrows(), 1), |sum, next| sum + next);
         for (index, (run, rows)) in fold.iter().enumerate() {
             let rows_of = |matrix: &Columns| matrix[*run].rows(rows.start, rows.len()).into_owned();
             let predicted = rows_of(&residual) - rows_of(&nuisance) * &learnt;
@@ -86,21 +86,21 @@ fn left_out(problem: &Problem, set: &EffectSet, noises: &NoiseModels, folds: Vec
 
 /// What the model reads wrong as it is, in the runs that training never saw, or in all where it saw none of them; `None`
 /// where it saw all of them.
-pub fn as_it_is(problem: &Problem, set: &EffectSet, noises: &NoiseModels, counts: &[bool]) -> Option<HeldOut> {
+pub fn as_it_is(problem: &Problem, set: &EffectSet, counts: &[bool]) -> Option<HeldOut> {
+    let initial = initial_states(problem, set);
     let by_sample = problem.cells().by_sample();
     let (rows, cells) = (problem.forward.residual_in_ug(&by_sample, set), problem.forward.residuals(set).delta);
     let mut sums = Sums::default();
-    let (mut squares, mut samples) = (0.0, 0.0);
+    let mut squares = 0.0;
     for index in (0..cells.len()).filter(|&index| counts[index]) {
         let all = 0..cells[index].nrows();
-        let own = begun(&noises.initial, index, all);
+        let own = begun(&initial, index, all);
         sums.add(&problem.cells().runs[index].cells, &cells[index], &own, problem.sample_ug);
         squares += rows[index].norm_squared();
-        samples += rows[index].nrows() as f64;
     }
     let runs = counts.iter().filter(|counts| **counts).count();
     let whole = HeldOut { whole_runs: true, ..sums.held_out(runs) };
-    (samples > 0.0).then(|| HeldOut { residual_ug: f64::sqrt(squares / samples), ..whole })
+    (sums.samples > 0.0).then(|| HeldOut { residual_ug: f64::sqrt(squares / sums.samples), ..whole })
 }
 
 /// Sums of squares over what was left out.
@@ -193,7 +193,7 @@ fn squares_of_its_own(cells: &[Cell], residual: &DMatrix<f64>, begun: &[Vec<f64>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{Moment, Recipe, dense, disturbed, effect, problem, white};
+    use crate::diagnose::example::{Moment, Recipe, dense, problem, warmed_up, white};
 
     const CELLS: usize = 20;
 
@@ -239,9 +239,7 @@ mod tests {
 
     #[test]
     fn what_is_held_out_is_what_a_fit_to_the_other_runs_leaves() {
-        let still = Recipe::default().campaign();
-        let truth = EffectSet::NONE.with(&effect("warm-up", &still), &[2e-4, 500.0]);
-        let campaign = disturbed(still, &truth);
+        let (campaign, truth) = warmed_up(&[2e-4, 500.0]);
         let problem = problem(&campaign);
         let set = EffectSet::NONE.with(&truth.effects[0], &[1.5e-4, 700.0]);
         let noises = white(&problem, &set, 5.0);
@@ -278,9 +276,7 @@ mod tests {
 
     #[test]
     fn runs_that_training_never_saw_are_predicted_from_those_that_it_saw() {
-        let still = Recipe::default().campaign();
-        let truth = EffectSet::NONE.with(&effect("warm-up", &still), &[2e-4, 500.0]);
-        let campaign = disturbed(still, &truth);
+        let (campaign, truth) = warmed_up(&[2e-4, 500.0]);
         let mut problem = problem(&campaign);
         let (none, noises) = (EffectSet::NONE, white(&problem, &truth, 5.0));
         let all = predicted(&problem, &truth, &noises);
@@ -289,7 +285,7 @@ mod tests {
         let found = predicted(&problem, &truth, &noises);
         assert_eq!((found.parts, found.whole_runs), (1, true));
         let third = problem.cells().runs[2].cells.iter().map(|cell| cell.samples).sum::<f64>();
-        let as_it_is = |counts: &[bool], set: &EffectSet| as_it_is(&problem, set, &noises, counts);
+        let as_it_is = |counts: &[bool], set: &EffectSet| as_it_is(&problem, set, counts);
         let [seen, unseen] =
             [&[true, true, false, true], &[false, false, true, false]].map(|counts| as_it_is(counts, &none).unwrap());
         assert!((unseen.deviance, seen.parts, unseen.parts) == (0.0, 3, 1) && third > 0.0);

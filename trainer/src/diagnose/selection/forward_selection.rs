@@ -6,12 +6,12 @@ use super::predictive::is_predictive;
 use super::screening::{screen, shifted};
 use super::uncertainty::is_determined;
 use crate::diagnose::cells::difference;
-use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects, name_of};
+use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects, amplitudes, name_of};
 use crate::diagnose::problem::{
     GlsPair, NoiseModels, Nuisance, Problem, carried, constrained, fit, initial_states, refine, sum_noise, widened,
 };
 use crate::diagnose::thresholds::{CONTENDER_STEPS, CONTENDER_TURNS, FINALISTS, INEXACT, LEAST_DELTA_BIC};
-use firmware_core::effect::{Role, SumResponse};
+use firmware_core::effect::SumResponse;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -114,7 +114,7 @@ impl<'a> Scene<'a> {
             let next: Vec<Contender> = screened.into_iter().filter(|one| passes(one) && is_new(one)).collect();
             chosen.extend(next.into_iter().map(|contender| shifted(&self.problem, &gls, contender)));
         }
-        chosen.retain(|contender| contender.effect.about.parameters.iter().any(|about| about.role == Role::Amplitude));
+        chosen.retain(|contender| !amplitudes(contender.effect.about).is_empty());
         chosen.extend(self.of_one_size(candidates));
         Some(chosen)
     }

@@ -1,6 +1,6 @@
 //! How well the campaign determines the parameters of effects, and whether well enough for a finding.
 
-use crate::diagnose::forward::EffectSet;
+use crate::diagnose::forward::{EffectSet, amplitudes};
 use crate::diagnose::problem::{GlsPair, NoiseModels, Problem, fixed};
 use crate::diagnose::regression::Score;
 use crate::diagnose::thresholds::{AT_BOUND, REMEMBERED, SIGNIFICANT_SIGMA};
@@ -42,7 +42,7 @@ pub fn is_determined(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -
         return false;
     };
     let parameters = || effect.about.parameters.iter().zip(values).zip(sigmas);
-    let has_amplitude = parameters().any(|((about, _), _)| about.role == Role::Amplitude);
+    let has_amplitude = !amplitudes(effect.about).is_empty();
     let sized = if has_amplitude { Role::Amplitude } else { Role::Shape };
     let significant = parameters().filter(|((about, _), _)| about.role == sized).any(|((about, value), sigma)| {
         // At its bound an amplitude is as large as it may be, whatever the slope of the optimiser's parameter there.
@@ -61,13 +61,11 @@ pub fn is_determined(problem: &Problem, set: &EffectSet, noises: &NoiseModels) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{Recipe, STEP_S, disturbed, effect, problem, white};
+    use crate::diagnose::example::{Recipe, STEP_S, effect, problem, warmed_up, white};
 
     #[test]
     fn what_is_there_is_determined_and_what_is_not_there_is_not() {
-        let still = Recipe::default().campaign();
-        let truth = EffectSet::NONE.with(&effect("warm-up", &still), &[2e-4, 500.0]);
-        let campaign = disturbed(still, &truth);
+        let (campaign, truth) = warmed_up(&[2e-4, 500.0]);
         let problem = problem(&campaign);
         let noises = white(&problem, &truth, 5.0);
         assert!(is_determined(&problem, &truth, &noises));

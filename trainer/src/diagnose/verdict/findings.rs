@@ -5,28 +5,31 @@ use crate::diagnose::answer::{Estimate, Finding};
 use crate::diagnose::design::separate;
 use crate::diagnose::forward::EffectSet;
 use crate::diagnose::problem::{Problem, carried};
-use crate::diagnose::selection::{Found, predicted, standard_uncertainties};
+use crate::diagnose::selection::{Found, HeldOut, predicted, standard_uncertainties};
 use crate::diagnose::thresholds::{CONFOUNDED, CONFOUNDED_SHARE};
 use firmware_core::effect::Role;
 use std::collections::BTreeMap;
 
 /// What was found, from the residual of the model as it is on, µg: it falls as much as that which is predicted without
-/// training, `own_ug` where nothing is found.
+/// training, at the start and with all findings.
 pub fn findings(
     problem: &Problem,
     start: &EffectSet,
     found: &Findings,
-    [mut residual_ug, own_ug]: [f64; 2],
+    mut residual_ug: f64,
+    [at_start, at_end]: [&HeldOut; 2],
 ) -> Vec<Finding> {
-    let unit = residual_ug / own_ug;
+    let unit = residual_ug / at_start.residual_ug;
     let sigmas = standard_uncertainties(&found.problem, &found.known, &found.noises);
     let mut known = start.clone();
     let mut findings = Vec::new();
     for (index, step) in found.steps.iter().enumerate() {
         let at = start.effects.len() + index;
         known = known.with(&found.known.effects[at], &found.known.coefficients.values[at]);
-        let around = if index + 1 == found.steps.len() { None } else { carried(problem, &known, &found.noises) };
-        let after_ug = predicted(around.as_ref().unwrap_or(&found.problem), &known, &found.noises).residual_ug * unit;
+        let is_last = index + 1 == found.steps.len();
+        let around = if is_last { None } else { carried(problem, &known, &found.noises) };
+        let after = around.map(|around| predicted(&around, &known, &found.noises));
+        let after_ug = after.as_ref().unwrap_or(at_end).residual_ug * unit;
         let name = step.winner.effect.about.name;
         let confounded_with = confounded(step);
         findings.push(Finding {
