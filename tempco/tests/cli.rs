@@ -146,7 +146,17 @@ fn a_diagnosis_answers_people_in_a_sentence_and_programs_in_json() {
     assert!(text.contains("Noise used:") && text.contains("\nNext:  tempco "), "{text}");
     assert!(text.contains("What this campaign can't show:") && text.contains("supply-voltage"), "{text}");
 
+    let all = stdout(&mut diagnose(&["--all"]));
+    assert!(!text.contains("Every effect that was judged") && all.contains("Every effect that was judged"), "{all}");
+
     let value: serde_json::Value = serde_json::from_str(&stdout(&mut diagnose(&["--json"]))).expect("JSON");
+    let candidates = value["candidates"].as_array().expect("candidates");
+    assert!(candidates.len() > 3, "{value}");
+    for one in candidates {
+        let [effect, reason] = ["effect", "reason"].map(|key| one[key].as_str().expect("words"));
+        assert!(all.contains(&format!("\n  {effect} ")) && all.contains(reason), "{effect} {reason}: {all}");
+        assert!(one["delta_bic"].is_number() && one["outcome"].is_string(), "{one}");
+    }
     for key in ["residual_ug", "noise_floor_ug", "explainable"] {
         assert!(value[key].is_number(), "{key}: {value}");
     }

@@ -30,7 +30,9 @@ mod selection;
 mod thresholds;
 mod verdict;
 
-pub use answer::{Dependence, Diagnosis, Estimate, Finding, Noise, Unexplained, Unobservable, Verdict};
+pub use answer::{
+    Dependence, Diagnosis, Estimate, Finding, Judged, Noise, Outcome, Unexplained, Unobservable, Verdict,
+};
 pub use design::plan;
 pub use error::DiagnoseError;
 pub use thresholds::LEAST_DELTA_BIC;

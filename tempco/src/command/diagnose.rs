@@ -27,6 +27,10 @@ pub struct Diagnose {
     #[arg(long)]
     fail_if_missing: bool,
 
+    /// Lists every effect that was judged, and what came of it
+    #[arg(long)]
+    all: bool,
+
     /// Prints one JSON object instead of text
     #[arg(long)]
     json: bool,
@@ -39,7 +43,7 @@ impl Diagnose {
         if self.json {
             say!("{:#}", serde_json::json!(diagnosis))?;
         } else {
-            say!("{}", diagnosis::text(&diagnosis))?;
+            say!("{}", diagnosis::text(&diagnosis, self.all))?;
             say!("Next:  {}", next(&diagnosis, &self.model, &self.data.command_line()))?;
         }
         let missing = diagnosis.verdict != Verdict::NothingMissing;

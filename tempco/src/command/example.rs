@@ -22,6 +22,7 @@ pub fn diagnosis(found: &[(&str, &[&str])]) -> Diagnosis {
         noise_floor_ug: 5.0,
         explainable: 1.0,
         findings: found.iter().map(finding).collect(),
+        candidates: Vec::new(),
         unobservable: Vec::new(),
         unexplained: None,
         dependences: Vec::new(),

@@ -4,12 +4,15 @@ use crate::table::Table;
 use firmware_core::effect::{About, about};
 use std::fmt::Write;
 use trainer::diagnose::{
-    Dependence, Diagnosis, Estimate, Finding, LEAST_DELTA_BIC, Noise, Unexplained, Unobservable, Verdict,
+    Dependence, Diagnosis, Estimate, Finding, Judged, LEAST_DELTA_BIC, Noise, Unexplained, Unobservable, Verdict,
 };
 
-/// The whole diagnosis.
-pub fn text(diagnosis: &Diagnosis) -> String {
+/// The whole diagnosis; `all` lists every effect that was judged.
+pub fn text(diagnosis: &Diagnosis, all: bool) -> String {
     let mut text = short(diagnosis);
+    if all {
+        text += &candidates(&diagnosis.candidates);
+    }
     text += &dependences(&diagnosis.dependences);
     text += &noise(&diagnosis.noise);
     text += &unobservable(&diagnosis.unobservable);
@@ -231,6 +234,22 @@ fn noise(noise: &Noise) -> String {
     format!("\nNoise used: {sample_ug:.2} µg from sample to sample{}.\n", parts.collect::<String>())
 }
 
+/// Every effect that was judged, and what came of it.
+fn candidates(all: &[Judged]) -> String {
+    let mut table = Table::new(["effect", "ΔBIC", "held-out ratio"]);
+    for one in all {
+        let ratio = one.held_out_ratio.map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.3}"));
+        table.row([one.effect.clone(), format!("{:.0}", one.delta_bic), ratio]);
+    }
+    let words = std::iter::once("what came of it".to_owned()).chain(all.iter().map(|one| one.outcome.reason()));
+    let lines: String =
+        table.to_string().lines().zip(words).map(|(line, words)| format!("{line}  {words}\n")).collect();
+    format!(
+        "\nEvery effect that was judged\n{lines}  held-out ratio = residual of what was left out with the effect over that \
+         without it, what is each run's own aside\n"
+    )
+}
+
 /// One line a reason: many effects lack the same thing.
 fn unobservable(all: &[Unobservable]) -> String {
     if all.is_empty() {
@@ -250,6 +269,7 @@ fn unobservable(all: &[Unobservable]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trainer::diagnose::Outcome;
 
     #[test]
     fn a_value_has_the_digits_that_its_uncertainty_allows() {
@@ -262,6 +282,25 @@ mod tests {
         ] {
             assert_eq!(with_sigma(Estimate { value, sigma }), text);
         }
+    }
+
+    #[test]
+    fn every_effect_that_was_judged_has_its_line_and_its_reason() {
+        let one = |effect: &str, delta_bic, held_out_ratio, outcome| Judged {
+            effect: effect.to_owned(),
+            delta_bic,
+            held_out_ratio,
+            outcome,
+        };
+        let text = candidates(&[
+            one("thermal-lag", 812.4, Some(0.2), Outcome::Found),
+            one("thermal-gradient", 90.0, None, Outcome::ExplainedBy("thermal-lag".to_owned())),
+        ]);
+        assert!(text.contains("\n  thermal-lag        812           0.200  found\n"), "{text}");
+        assert!(
+            text.contains("\n  thermal-gradient    90               -  explains the same as thermal-lag\n"),
+            "{text}"
+        );
     }
 
     #[test]

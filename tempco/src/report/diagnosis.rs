@@ -5,7 +5,7 @@ use crate::page::escaped;
 use crate::render::diagnosis::{parameters, verdict};
 use firmware_core::effect::about;
 use std::fmt::Write;
-use trainer::diagnose::{Diagnosis, Finding, LEAST_DELTA_BIC};
+use trainer::diagnose::{Diagnosis, Finding, Judged, LEAST_DELTA_BIC};
 
 /// What is missing, how sure that is, and what the campaign can't show.
 pub fn section(diagnosis: &Diagnosis) -> String {
@@ -19,6 +19,9 @@ pub fn section(diagnosis: &Diagnosis) -> String {
     if !diagnosis.dependences.is_empty() {
         text += &dependences(diagnosis);
     }
+    if !diagnosis.candidates.is_empty() {
+        text += &candidates(&diagnosis.candidates);
+    }
     if !diagnosis.unobservable.is_empty() {
         let mut table = Table::new("What this campaign can't show", [Column::Text("effect"), Column::Text("why")]);
         for one in &diagnosis.unobservable {
@@ -27,6 +30,21 @@ pub fn section(diagnosis: &Diagnosis) -> String {
         text += &table.to_string();
     }
     text
+}
+
+fn candidates(all: &[Judged]) -> String {
+    let columns = [
+        Column::Text("effect"),
+        Column::Figure("ΔBIC"),
+        Column::Figure("held-out ratio"),
+        Column::Text("what came of it"),
+    ];
+    let mut table = Table::new("Every effect that was judged", columns);
+    for one in all {
+        let ratio = one.held_out_ratio.map_or_else(String::new, |ratio| format!("{ratio:.3}"));
+        table.row([one.effect.clone(), format!("{:.0}", one.delta_bic), ratio, one.outcome.reason()]);
+    }
+    table.to_string()
 }
 
 fn findings(findings: &[Finding]) -> String {

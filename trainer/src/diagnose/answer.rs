@@ -1,6 +1,7 @@
 //! What a diagnosis says. Data; whoever shows it formats it.
 
 use firmware_core::effect::{self, About};
+use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 
@@ -25,6 +26,8 @@ pub struct Diagnosis {
     pub explainable: f64,
     /// What is missing, in the order in which it should be added.
     pub findings: Vec<Finding>,
+    /// Every effect that was judged, those that came nearest first, and what came of each.
+    pub candidates: Vec<Judged>,
     /// What this campaign can't show.
     pub unobservable: Vec<Unobservable>,
     /// Structure that no known effect accounts for.
@@ -54,6 +57,7 @@ impl Diagnosis {
             noise,
             verdict: _,
             explainable: _,
+            candidates: _,
             unobservable: _,
         } = &mut self;
         let mut sizes = vec![residual_ug, residual_after_ug, noise_floor_ug, predictable_ug, predictable_after_ug];
@@ -98,6 +102,94 @@ pub enum Verdict {
     NothingMissing,
     /// There is structure, and no known effect is its cause.
     Unexplained,
+}
+
+/// An effect that was judged, and what came of it; it is written with the outcome in a word and in words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judged {
+    /// Its name, or the formula of a channel.
+    pub effect: String,
+    /// ΔBIC beside what was found before, fitted, or as screened where it was not fitted.
+    pub delta_bic: f64,
+    /// Residual of what was left out with the effect over that without it, what is each run's own aside; none where nobody
+    /// asked.
+    pub held_out_ratio: Option<f64>,
+    /// What came of it.
+    pub outcome: Outcome,
+}
+
+impl Serialize for Judged {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { effect, delta_bic, held_out_ratio, outcome } = self;
+        let mut fields = serializer.serialize_struct("Judged", 5)?;
+        fields.serialize_field("effect", effect)?;
+        fields.serialize_field("delta_bic", delta_bic)?;
+        fields.serialize_field("held_out_ratio", held_out_ratio)?;
+        fields.serialize_field("outcome", outcome.word())?;
+        fields.serialize_field("reason", &outcome.reason())?;
+        fields.end()
+    }
+}
+
+/// What came of an effect that was judged.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It is among the findings.
+    Found,
+    /// Its ΔBIC is too small.
+    Weak,
+    /// Others did better as screened; it was not fitted.
+    NotFitted,
+    /// It explains what this effect explains, which was found.
+    ExplainedBy(String),
+    /// It may be what this effect's formula lacks.
+    WithinFormulaOf(String),
+    /// A shape ended at the bound of what makes physical sense.
+    AtBound,
+    /// Its amplitude is no three standard uncertainties from nothing, or it remembers for less than a sample.
+    Undetermined,
+    /// It does not predict what was left out.
+    NotPredictive,
+    /// A structure that no effect makes is more likely.
+    Resembles,
+    /// What was found later explains it.
+    Superfluous,
+}
+
+impl Outcome {
+    /// The same in a word, for programs.
+    #[must_use]
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::Found => "found",
+            Self::Weak => "weak",
+            Self::NotFitted => "not-fitted",
+            Self::ExplainedBy(_) => "explained",
+            Self::WithinFormulaOf(_) => "within-formula",
+            Self::AtBound => "at-bound",
+            Self::Undetermined => "undetermined",
+            Self::NotPredictive => "not-predictive",
+            Self::Resembles => "resembles",
+            Self::Superfluous => "superfluous",
+        }
+    }
+
+    /// The same in words.
+    #[must_use]
+    pub fn reason(&self) -> String {
+        match self {
+            Self::Found => "found".to_owned(),
+            Self::Weak => "too weak".to_owned(),
+            Self::NotFitted => "others explain more; not fitted".to_owned(),
+            Self::ExplainedBy(effect) => format!("explains the same as {effect}"),
+            Self::WithinFormulaOf(effect) => format!("no more than the formula of {effect} may lack"),
+            Self::AtBound => "at the bound of its formula".to_owned(),
+            Self::Undetermined => "its size is not determined".to_owned(),
+            Self::NotPredictive => "reads what was left out no better".to_owned(),
+            Self::Resembles => "merely resembles a structure without a name".to_owned(),
+            Self::Superfluous => "superfluous beside what was found later".to_owned(),
+        }
+    }
 }
 
 /// One effect that is missing.

@@ -4,7 +4,7 @@ mod findings;
 mod found;
 mod rest;
 
-use super::answer::{Diagnosis, Verdict};
+use super::answer::{Diagnosis, Outcome, Verdict};
 use super::error::DiagnoseError;
 use super::forward::{EffectSet, name_of};
 use super::lack_of_fit::{dependences, lack_of_fit, largest_alternative};
@@ -111,7 +111,8 @@ impl<'a> Driver<'a> {
             let explained: Vec<_> =
                 found.steps.iter().map(|step| (step.winner.alone(), step.winner.delta_bic)).collect();
             let searched = missing(&found.problem, &found.known, &explained, &candidates, &found.noises);
-            let Searched { found: next, at_bound, noises, best: _ } = searched.ok_or(DiagnoseError::NoNoise)?;
+            let Searched { found: next, at_bound, noises, judged, best: _ } = searched.ok_or(DiagnoseError::NoNoise)?;
+            found.trace(judged);
             let next = next.filter(|next| dropped.iter().all(|name| name != name_of(&next.winner.effect)));
             let Some(next) = next else {
                 (found.at_bound, found.noises) = (at_bound, noises);
@@ -123,10 +124,13 @@ impl<'a> Driver<'a> {
                 break;
             }
             if self.is_resemblance(&found.problem, &found.known, &next) {
+                found.outcome_of(name_of(&next.winner.effect), &Outcome::Resembles);
                 found.noises = noises;
                 break;
             }
+            let name = name_of(&next.winner.effect).to_owned();
             if !self.take(&mut found, next).ok_or(DiagnoseError::NoNoise)? {
+                found.outcome_of(&name, &Outcome::NotPredictive);
                 break;
             }
             dropped.extend(self.prune(&mut found).ok_or(DiagnoseError::NoNoise)?);
@@ -198,7 +202,9 @@ impl<'a> Driver<'a> {
             if delta_bic >= LEAST_DELTA_BIC {
                 break;
             }
-            dropped.push(name_of(&found.steps.remove(step).winner.effect).to_owned());
+            let name = name_of(&found.steps.remove(step).winner.effect).to_owned();
+            found.outcome_of(&name, &Outcome::Superfluous);
+            dropped.push(name);
             (found.problem, found.known) = (rescaled(problem, &known), known);
             found.noises = self.refined(&found.problem, &found.known, &found.noises);
         }
@@ -232,7 +238,9 @@ impl<'a> Driver<'a> {
         let known = self.start.with(&step.winner.effect, &step.winner.values);
         let problem = carried(self.problem, &known, &found.noises)?;
         let noises = self.refined(&problem, &known, &found.noises);
-        Some(Findings { steps: vec![step], ..Findings::nothing_yet(problem, known, noises) })
+        let mut predictive = Findings { judged: found.judged.clone(), ..Findings::nothing_yet(problem, known, noises) };
+        predictive.outcome_of(name_of(&step.winner.effect), &Outcome::Found);
+        Some(Findings { steps: vec![step], ..predictive })
     }
 
     fn answer(&self, campaign: &Campaign, mut found: Findings<'a>) -> Diagnosis {
@@ -245,7 +253,9 @@ impl<'a> Driver<'a> {
             && structure_ug(&found.problem, &found.known) > LOWERED * structure_ug(problem, start)
         {
             (found.problem, found.known) = (problem.clone(), start.clone());
-            found.steps.clear();
+            let names: Vec<String> =
+                found.steps.drain(..).map(|step| name_of(&step.winner.effect).to_owned()).collect();
+            names.iter().for_each(|name| found.outcome_of(name, &Outcome::NotPredictive));
         }
         // Predicted as well as the noise without the findings allows.
         let noises = found.steps.first().map_or(&found.noises, |step| &step.noises).beside(&found.noises.initial);
@@ -277,6 +287,7 @@ impl<'a> Driver<'a> {
             predictable_after_ug: after_ug,
             explainable: explainable(before_ug, after_ug, &found.noises.delta),
             findings,
+            candidates: std::mem::take(&mut found.judged),
             unobservable: Vec::new(),
             unexplained: unexplained.then(|| unexplained_rest(&found, &lack_of_fit, &dependences, campaign)),
             dependences,

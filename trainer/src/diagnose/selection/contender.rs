@@ -1,5 +1,6 @@
 //! An effect in the competition, and what came of it.
 
+use crate::diagnose::answer::{Judged, Outcome};
 use crate::diagnose::forward::{EffectSet, is_placed, name_of};
 use crate::diagnose::problem::NoiseModels;
 use crate::diagnose::thresholds::AT_BOUND;
@@ -18,6 +19,8 @@ pub struct Contender {
     pub delta_bic: f64,
     /// The noise that it leaves, once it is estimated.
     pub noises: Option<NoiseModels>,
+    /// Whether the campaign determines it.
+    pub determined: bool,
 }
 
 impl Contender {
@@ -56,6 +59,11 @@ impl Contender {
         pairs.filter(|(parameter, _)| parameter.unit == "°C/g").map(|(_, value)| value.abs()).sum()
     }
 
+    /// As it is told.
+    pub fn judged(&self, outcome: Outcome) -> Judged {
+        Judged { effect: name_of(&self.effect).to_owned(), delta_bic: self.delta_bic, held_out_ratio: None, outcome }
+    }
+
     /// The effect by itself.
     pub fn alone(&self) -> EffectSet {
         EffectSet::NONE.with(&self.effect, &self.values)
@@ -84,6 +92,8 @@ pub struct Searched {
     pub at_bound: f64,
     /// The noise without it.
     pub noises: NoiseModels,
+    /// All effects that were judged, each once.
+    pub judged: Vec<Judged>,
 }
 
 /// The first of every effect.
@@ -104,7 +114,7 @@ mod tests {
 
     fn contender(name: &str, values: &[f64], delta_bic: f64) -> Contender {
         let effect = Chosen::of(effect::about(name).unwrap());
-        Contender { effect, values: values.to_vec(), delta_bic, noises: None }
+        Contender { effect, values: values.to_vec(), delta_bic, noises: None, determined: true }
     }
 
     fn is_at_bound(name: &str, values: &[f64]) -> bool {

@@ -2,9 +2,10 @@
 
 use super::candidate::Candidate;
 use super::contender::{Contender, Found, Searched, best_of_each};
-use super::predictive::is_predictive;
+use super::predictive::{Prediction, prediction};
 use super::screening::{screen, shifted};
 use super::uncertainty::is_determined;
+use crate::diagnose::answer::{Judged, Outcome};
 use crate::diagnose::cells::difference;
 use crate::diagnose::forward::{CellResiduals, EffectSet, FixedEffects, amplitudes, name_of};
 use crate::diagnose::problem::{
@@ -36,27 +37,68 @@ pub fn missing(
     noises: &NoiseModels,
 ) -> Option<Searched> {
     let scene = Scene::new(problem, known, noises)?;
+    let (screened, finalists) = scene.finalists(candidates)?;
     let mut order: Vec<Contender> =
-        scene.finalists(candidates)?.into_par_iter().filter_map(|contender| scene.contend(contender)).collect();
+        finalists.into_par_iter().filter_map(|contender| scene.contend(contender)).collect();
     order.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    let mut trace = Trace::new(&screened, &order);
+    let (sound, others): (Vec<_>, Vec<_>) = order.into_iter().partition(|one: &Contender| one.determined);
+    trace.strong(&others, &Outcome::Undetermined);
     let (at_bound, order): (Vec<_>, Vec<_>) =
-        order.into_iter().partition(|contender: &Contender| contender.is_at_bound(&problem.cells().range_c()));
+        sound.into_iter().partition(|contender| contender.is_at_bound(&problem.cells().range_c()));
+    trace.strong(&at_bound, &Outcome::AtBound);
     let mut order = best_of_each(order);
-    let at_bound = at_bound.first().filter(|one| is_predictive(problem, known, one).unwrap_or(false));
-    let at_bound = at_bound.map_or(f64::NEG_INFINITY, |contender| contender.delta_bic);
-    // An effect must be more than others' formulas may lack, and predict runs that its parameters were not fitted to.
-    let is_missing = |next: &Contender| {
-        let needed = LEAST_DELTA_BIC + inexact(problem, explained, &next.alone());
-        Some(next.delta_bic >= needed && is_predictive(problem, known, next)?)
-    };
+    let holds = |one: &&Contender| prediction(problem, known, one).is_some_and(|prediction| prediction.holds);
+    let at_bound = at_bound.first().filter(holds).map_or(f64::NEG_INFINITY, |contender| contender.delta_bic);
     let (best, mut found) = (order.first().cloned(), None);
     while found.is_none() && order.first().is_some_and(|next| next.delta_bic >= LEAST_DELTA_BIC) {
         let winner = order.remove(0);
-        if is_missing(&winner)? {
+        // It must be more than others' formulas may lack, and predict runs that its parameters were not fitted to.
+        if winner.delta_bic < LEAST_DELTA_BIC + inexact(problem, explained, &winner.alone()) {
+            let known =
+                explained.iter().flat_map(|(one, _)| one.effects.first()).map(|effect| name_of(effect).to_owned());
+            trace.set(&winner, Outcome::WithinFormulaOf(known.collect::<Vec<_>>().join(" or ")), None);
+            continue;
+        }
+        let Prediction { holds, ratio } = prediction(problem, known, &winner)?;
+        trace.set(&winner, if holds { Outcome::Found } else { Outcome::NotPredictive }, Some(ratio));
+        if holds {
+            trace.strong(&order, &Outcome::ExplainedBy(name_of(&winner.effect).to_owned()));
             found = Some(Found { winner, rivals: std::mem::take(&mut order), noises: scene.noises.clone() });
         }
     }
-    Some(Searched { found, best, at_bound, noises: scene.noises })
+    Some(Searched { found, best, at_bound, noises: scene.noises, judged: trace.judged })
+}
+
+/// What came of each effect in one search.
+struct Trace {
+    judged: Vec<Judged>,
+}
+
+impl Trace {
+    fn new(screened: &[Contender], fitted: &[Contender]) -> Self {
+        let is_fitted = |one: &&Contender| fitted.iter().any(|other| other.is_same_effect(one));
+        let judged = best_of_each(fitted.to_vec()).iter().map(|one| one.judged(Outcome::Weak)).collect();
+        let mut trace = Self { judged };
+        let as_screened = |one: &Contender| {
+            one.judged(if one.delta_bic < LEAST_DELTA_BIC { Outcome::Weak } else { Outcome::NotFitted })
+        };
+        trace.judged.extend(screened.iter().filter(|one| !is_fitted(one)).map(as_screened));
+        trace
+    }
+
+    fn set(&mut self, contender: &Contender, outcome: Outcome, held_out_ratio: Option<f64>) {
+        let name = name_of(&contender.effect);
+        if let Some(one) = self.judged.iter_mut().find(|one| one.effect == name) {
+            *one = Judged { held_out_ratio, ..contender.judged(outcome) };
+        }
+    }
+
+    /// What came of those that had to be looked at; the others are weak, whatever else they are.
+    fn strong(&mut self, contenders: &[Contender], outcome: &Outcome) {
+        let strong = contenders.iter().rev().filter(|one| one.delta_bic >= LEAST_DELTA_BIC);
+        strong.for_each(|one| self.set(one, outcome.clone(), None));
+    }
 }
 
 /// ΔBIC that an effect may owe to formulas of others that are not exact: to the squared share of their amplitude, as far as
@@ -102,13 +144,15 @@ impl<'a> Scene<'a> {
         GlsPair::new(&self.problem, residuals, &self.nuisance, noises)
     }
 
-    fn finalists(&self, candidates: &[Candidate]) -> Option<Vec<Contender>> {
-        let mut chosen: Vec<Contender> = Vec::new();
+    /// Every effect as screened, and those that are fitted.
+    fn finalists(&self, candidates: &[Candidate]) -> Option<(Vec<Contender>, Vec<Contender>)> {
+        let (mut chosen, mut all): (Vec<Contender>, Vec<Contender>) = (Vec::new(), Vec::new());
         for (noises, most) in [self.noises.clone(), self.noises.small()].iter().zip(FINALISTS) {
             let gls = self.gls(&self.residuals, noises)?;
             let mut screened = screen(&self.problem, &gls, self.known, candidates);
             screened.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
             let names = best_of_each(screened.clone());
+            all.extend(names.iter().cloned());
             let passes = |contender: &Contender| names.iter().take(most).any(|name| name.is_same_effect(contender));
             let is_new = |contender: &Contender| chosen.iter().all(|other| !other.is_same_start(contender));
             let next: Vec<Contender> = screened.into_iter().filter(|one| passes(one) && is_new(one)).collect();
@@ -116,7 +160,7 @@ impl<'a> Scene<'a> {
         }
         chosen.retain(|contender| !amplitudes(contender.effect.about).is_empty());
         chosen.extend(self.of_one_size(candidates));
-        Some(chosen)
+        Some((best_of_each(all), chosen))
     }
 
     /// Every effect that comes in one size, at the shape of the grid beside which the map fits best. It moves the map's
@@ -135,6 +179,7 @@ impl<'a> Scene<'a> {
                 values: candidate.values.clone(),
                 delta_bic,
                 noises: None,
+                determined: true,
             })
         });
         let mut order: Vec<Contender> = judged.collect();
@@ -180,13 +225,11 @@ impl<'a> Scene<'a> {
             }
         }
         let values = own.coefficients.values.concat();
-        if !is_determined(&scene.problem, &self.known.and(&own), &noises) {
-            return None;
-        }
+        let determined = is_determined(&scene.problem, &self.known.and(&own), &noises);
         // Neither side may profit from a noise that was searched for longer.
         let without = self.deviance_without(&noises)?.min(self.deviance);
         let cost = self.problem.parameter_cost() * contender.effect.free().count() as f64;
-        Some(Contender { values, delta_bic: without - deviance - cost, noises: Some(noises), ..contender })
+        Some(Contender { values, delta_bic: without - deviance - cost, noises: Some(noises), determined, ..contender })
     }
 
     /// What is left of the sum when an effect's share there is free within bounds, and the noise of that.
@@ -239,19 +282,39 @@ mod tests {
 
     #[test]
     fn the_effect_that_was_put_in_wins_with_its_values() {
+        let mut explained = 0;
         for (name, values) in
             [("warm-up", [2e-4, 500.0]), ("thermal-gradient", [5e-3, 60.0]), ("thermal-hysteresis", [1e-5, 8.0])]
         {
             let (campaign, _) = with(name, &values, false);
-            let found = searched(&campaign, &EffectSet::NONE).found.unwrap();
+            let Searched { found, judged, .. } = searched(&campaign, &EffectSet::NONE);
+            let found = found.unwrap();
             let winner = &found.winner;
             assert_eq!(winner.effect.about.name, name);
             assert!(winner.delta_bic > LEAST_DELTA_BIC, "{name}: {}", winner.delta_bic);
             assert!(found.rivals.iter().all(|rival| rival.delta_bic < winner.delta_bic), "{name}");
+            // Each effect is told once, the winner as found, and the others with why they are not.
+            let outcome = |name: &str| -> Vec<&Outcome> {
+                judged.iter().filter(|one| one.effect == name).map(|one| &one.outcome).collect()
+            };
+            assert_eq!(outcome(name), [&Outcome::Found]);
+            assert!(judged.iter().all(|one| outcome(&one.effect).len() == 1) && judged.len() == NAMES.len());
+            for one in judged.iter().filter(|one| one.effect != name) {
+                let expected = match one.delta_bic >= LEAST_DELTA_BIC {
+                    true if one.outcome == Outcome::NotFitted => continue,
+                    true => Outcome::ExplainedBy(name.to_owned()),
+                    false => Outcome::Weak,
+                };
+                assert_eq!(one.outcome, expected, "{judged:?}");
+            }
+            explained += judged.iter().filter(|one| one.outcome == Outcome::ExplainedBy(name.to_owned())).count();
+            let ratio = judged.iter().find(|one| one.effect == name).unwrap().held_out_ratio.unwrap();
+            assert!((0.0..0.9).contains(&ratio), "{ratio}");
             for (value, truth) in winner.values.iter().zip(values) {
                 assert!((value / truth - 1.0).abs() < 0.15, "{name}: {value} {truth}");
             }
         }
+        assert!(explained > 0);
     }
 
     #[test]
@@ -259,6 +322,7 @@ mod tests {
         for sum in [false, true] {
             let campaign = Recipe { sum, ..Recipe::default() }.campaign();
             let searched = searched(&campaign, &EffectSet::NONE);
+            assert!(searched.judged.iter().all(|one| one.outcome != Outcome::Found && one.held_out_ratio.is_none()));
             assert!(searched.found.is_none() && searched.best.is_none_or(|best| best.delta_bic < LEAST_DELTA_BIC));
         }
     }

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 /// the error, or with clearly less of what is predictable: the residual alone, as the sum of the frequencies
 /// has no held-out part of its own. Likelihood alone would not do: it weighs most where the noise is least, and there
 /// no formula is exact.
-pub fn is_predictive(problem: &Problem, known: &EffectSet, contender: &Contender) -> Option<bool> {
+pub fn prediction(problem: &Problem, known: &EffectSet, contender: &Contender) -> Option<Prediction> {
     let with = known.with(&contender.effect, &contender.values);
     let noises = contender.noises.as_ref()?.beside(&initial_states(problem, &with));
     let around = carried(problem, &with, &noises)?;
@@ -28,13 +28,22 @@ pub fn is_predictive(problem: &Problem, known: &EffectSet, contender: &Contender
     let without = carried(problem, known, &noises)?;
     let gain = fitted(&without, known)? - fitted(&around, &with)?;
     let (before, after) = (held_out(&without, known, &noises), held_out(&around, &with, &noises));
-    if problem.unseen.is_some() && is_worse(&predicted(problem, known, &noises), &predicted(&around, &with, &noises)) {
-        return Some(false);
-    }
+    let unseen_worse =
+        problem.unseen.is_some() && is_worse(&predicted(problem, known, &noises), &predicted(&around, &with, &noises));
     let all = after.residual_ug / before.residual_ug;
     let predictable = after.structure_ug() / before.structure_ug();
     let predicted = before.deviance - after.deviance > PREDICTED * gain.max(0.0);
-    Some(all < HALVED || predictable < LOWERED || predicted && (all < WORSE || predictable < WORSE))
+    let better = all < HALVED || predictable < LOWERED || predicted && (all < WORSE || predictable < WORSE);
+    Some(Prediction { holds: better && !unseen_worse, ratio: predictable })
+}
+
+/// What an effect makes of what was left out.
+#[derive(Clone, Copy, Debug)]
+pub struct Prediction {
+    /// Whether it is worth having there.
+    pub holds: bool,
+    /// Residual with it over that without it, what is each run's own aside.
+    pub ratio: f64,
 }
 
 /// Whether what was left out is read worse, with what is each run's own and without.
@@ -93,7 +102,13 @@ mod tests {
 
     fn contender(problem: &Problem, set: &EffectSet, values: &[f64]) -> Contender {
         let noises = Some(white(problem, &EffectSet::NONE, 5.0));
-        Contender { effect: set.effects[0].clone(), values: values.to_vec(), delta_bic: 100.0, noises }
+        Contender {
+            effect: set.effects[0].clone(),
+            values: values.to_vec(),
+            delta_bic: 100.0,
+            noises,
+            determined: true,
+        }
     }
 
     #[test]
@@ -102,10 +117,13 @@ mod tests {
         let still = Recipe::default().campaign();
         let none = EffectSet::NONE;
         let (with, without) = (problem(&campaign), problem(&still));
-        assert_eq!(is_predictive(&with, &none, &contender(&with, &truth, &[2e-4, 500.0])), Some(true));
-        assert_eq!(is_predictive(&without, &none, &contender(&without, &truth, &[2e-4, 500.0])), Some(false));
+        let holds = |problem, contender: &Contender| prediction(problem, &none, contender).map(|one| one.holds);
+        assert_eq!(holds(&with, &contender(&with, &truth, &[2e-4, 500.0])), Some(true));
+        assert_eq!(holds(&without, &contender(&without, &truth, &[2e-4, 500.0])), Some(false));
+        let ratio = prediction(&with, &none, &contender(&with, &truth, &[2e-4, 500.0])).unwrap().ratio;
+        assert!((0.0..0.5).contains(&ratio), "{ratio}");
         let unjudged = Contender { noises: None, ..contender(&with, &truth, &[2e-4, 500.0]) };
-        assert_eq!(is_predictive(&with, &none, &unjudged), None);
+        assert_eq!(holds(&with, &unjudged), None);
     }
 
     #[test]

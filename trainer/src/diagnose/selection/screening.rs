@@ -50,7 +50,7 @@ fn judged(problem: &Problem, candidate: &Candidate, score: &Score) -> Contender 
         score.gain()
     };
     let delta_bic = gain - problem.parameter_cost() * candidate.effect.free().count() as f64;
-    Contender { effect: candidate.effect.clone(), values, delta_bic, noises: None }
+    Contender { effect: candidate.effect.clone(), values, delta_bic, noises: None, determined: true }
 }
 
 #[cfg(test)]
@@ -102,6 +102,7 @@ mod tests {
             values: vec![1e-4, 2.0, 20.0, 0.0],
             delta_bic: f64::NEG_INFINITY,
             noises: None,
+            determined: true,
         };
         let moved = shifted(&problem, &gls, unmoved.clone());
         assert!(

@@ -48,6 +48,7 @@ export function render(state, model, context) {
     formula(diagnosis, state, model, context),
     seal(state, context),
     dependences(diagnosis),
+    candidates(diagnosis),
     unobservable(diagnosis),
     make("div", { class: "actions" }, ask),
     command(model.commands.diagnose),
@@ -208,6 +209,20 @@ function dependences({ dependences: all }) {
     { id: "dependences" },
     make("summary", {}, "What the residual follows, before and after the findings"),
     table("", ["quantity", "", number("before µg"), number("by chance"), number("after µg"), number("by chance")], rows),
+  );
+}
+
+function candidates({ candidates: all }) {
+  if (!all.length) return undefined;
+  const number = (text) => ({ number: text });
+  const rows = all.map((one) => ({
+    cells: [one.effect, one.delta_bic.toFixed(0), one.held_out_ratio?.toFixed(3) ?? "", one.reason],
+  }));
+  return make(
+    "details",
+    { id: "candidates" },
+    make("summary", {}, "Every effect that was judged, and what came of it"),
+    table("", ["effect", number("ΔBIC"), number("held-out ratio"), "what came of it"], rows),
   );
 }
 
