@@ -29,7 +29,7 @@ class Effect:
     parameters: dict = field(default_factory=dict)
     disturb: Callable | None = None
     distort: Callable | None = None
-    limits: tuple = (1e-9, 1e9)  # of |amplitude|, where physics sets one
+    limits: tuple = (1e-9, 1e6)  # of |amplitude|: a g of bias, or what physics sets
     start: float = 1.0  # of the search for the amplitude
     per_run: bool = False  # (nearly) constant within a run: sized against the map alone, as run offsets would remove it
     positive: bool = False  # physics allows one sign only

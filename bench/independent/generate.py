@@ -37,7 +37,7 @@ def main():
     args = parser.parse_args()
     class_index = CLASSES.index(args.campaign_class)
     lab_rng, rig_rng, hidden_rng = np.random.default_rng([args.seed, class_index]).spawn(3)
-    labs = balanced(lab_rng, ["rich", "other"], args.count)
+    labs = balanced(lab_rng, ["rich", "other", "scarce"], args.count)
     rigs = balanced(rig_rng, [True, False], args.count)
     hidden = choose_hidden(hidden_rng, args.campaign_class, args.count)
     for index, (factories, needs) in enumerate(hidden):

@@ -43,6 +43,8 @@ class Lab:
     sigma_column: bool
     plans: list
     intervals_s: list
+    finer: int = 1  # steps of what happens for each row that is written
+    gap_s: float = 0.0  # without rows after each turn of the head
 
 
 def full_run(rng, descending):
@@ -142,6 +144,37 @@ def draw_other_lab(rng, needs):
     styles = ["f1f2", "delta_sum"] if "sum" in needs else ["f1f2", "delta_sum", "delta", "delta"]
     return Lab("other", rng.uniform(60, 150), "cross" in needs or rng.random() < 0.5, rng.random() < 0.5,
                str(rng.choice(styles)), auxiliary, True, rng.random() < 0.3, plans, intervals_s)
+
+
+def draw_scarce_lab(rng, needs):
+    """One kind of run, one interval for all, seconds missing after each turn of the head: what many people have."""
+    auxiliary = needs_auxiliary(needs)
+    kinds = {
+        "ramps only": lambda: ramp_run(rng, float(rng.choice([0.0, 20.0, 90.0, 160.0, 200.0, 270.0, 340.0]))),
+        "nodes only": lambda: full_run(rng, rng.random() < 0.5),
+        "three levels": lambda: levels_run(rng, (0.0, 90.0, 270.0)),
+        "turned on ramps": lambda: levels_run(rng, (0.0, 90.0, 180.0, 270.0, 45.0, 225.0)),
+    }
+    kind = kinds[str(rng.choice(list(kinds)))]
+    plans = [kind() for _ in range(int(rng.integers(4, 9)))] + [sweep_run(rng, column) for column in sorted(auxiliary)]
+    duration_s = sum(segment.duration_s for plan in plans for segment in plan.segments)
+    interval_s = max(log_uniform(rng, 0.1, 60), duration_s / 40_000)
+    styles = ["f1f2", "delta_sum"] if "sum" in needs else ["f1f2", "delta"]
+    return Lab("scarce", rng.uniform(3, 60), "cross" in needs, rng.random() < 0.5, str(rng.choice(styles)), auxiliary,
+               rng.random() < 0.5, False, plans, [interval_s] * len(plans), finer=4 if interval_s > 4 else 1,
+               gap_s=float(rng.choice([0.0, 10.0, 30.0])))
+
+
+def levels_run(rng, angles_deg):
+    """A loop of the chamber without a pause, the head turned all the while."""
+    rate, dwell_s = log_uniform(rng, 0.35, 3.0), rng.uniform(60, 300)
+    cold, hot = rng.uniform(-40, -15), rng.uniform(40, 60)
+    first, last = (cold, hot) if rng.random() < 0.5 else (hot, cold)
+    steps = int(np.ceil(60 * (hot - cold) / rate / dwell_s))
+    turns = [float(angles_deg[k % len(angles_deg)]) for k in range(2 * steps)]
+    there = [Segment(dwell_s, last, angle, rate) for angle in turns[:steps]]
+    back = [Segment(dwell_s, first, angle, rate) for angle in turns[steps:]]
+    return RunPlan("loop", first, [Segment(dwell_s, first, turns[-1]), *there, *back])
 
 
 def needs_auxiliary(needs):

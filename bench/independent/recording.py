@@ -1,12 +1,13 @@
 """The recording: true quantities, row after row, as chamber, dividing head and weather carry out a protocol."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from lag import low_pass
 
 SECONDS_PER_DAY = 86_400.0
+MOST_OFTEN_S = 0.1
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,13 @@ class Recording:
     vibration_g2: np.ndarray
     pressure_pa: np.ndarray
     humidity_pct: np.ndarray
+
+    def of_rows(self, rows):
+        """The same with some of its rows."""
+        return Recording(**{
+            one.name: value if one.name == "kind" else value[rows]
+            for one in fields(self) for value in [getattr(self, one.name)]
+        })
 
     @property
     def accel_g(self):
@@ -42,7 +50,7 @@ class Recording:
 
 
 def record(rng, lab):
-    """The campaign: runs on several dates, each starting at some hour of the day."""
+    """What happens, run after run on several dates, each starting at some hour of the day; and which rows are written."""
     weather = dict(chamber_tau_s=rng.uniform(200, 600), ripple_k=rng.uniform(0.01, 0.05), ripple_s=rng.uniform(300, 900),
                    phase=rng.uniform(0, 2 * np.pi))
     runs, free_s = [], 0.0
@@ -52,12 +60,13 @@ def record(rng, lab):
         runs.append(record_run(rng, lab, index, start_s, weather))
         free_s = runs[-1]["clock_s"][-1] + 10 * 3600
     joined = {key: np.concatenate([run[key] for run in runs]) for key in runs[0] if key != "kind"}
-    return Recording(kind=[run["kind"] for run in runs], **joined)
+    written = joined.pop("written")
+    return Recording(kind=[run["kind"] for run in runs], **joined), written
 
 
 def record_run(rng, lab, index, start_s, weather):
     plan = lab.plans[index]
-    time_s, owners = sample_times(plan, lab.intervals_s[index])
+    time_s, owners, written = sample_times(plan, lab.intervals_s[index], lab.finer, lab.gap_s)
     temp_c = low_pass(time_s, chamber_setpoint(plan, time_s, owners), weather["chamber_tau_s"])
     temp_c = temp_c + weather["ripple_k"] * np.sin(2 * np.pi * time_s / weather["ripple_s"] + rng.uniform(0, 6.28))
     clock_s = start_s + time_s
@@ -68,7 +77,7 @@ def record_run(rng, lab, index, start_s, weather):
 
     rows = len(time_s)
     return dict(
-        run=np.full(rows, index), kind=plan.kind, time_s=time_s, power_on_s=time_s + on_before_s, clock_s=clock_s,
+        written=written, run=np.full(rows, index), kind=plan.kind, time_s=time_s, power_on_s=time_s + on_before_s, clock_s=clock_s,
         temp_c=temp_c, angle_deg=held("angle_deg"),
         supply_v=3.3 + held("supply_v") + rng.normal(0, 5e-4, rows),
         vibration_g2=np.abs(held("vibration_g2") * (1 + rng.normal(0, 0.02, rows)) + rng.normal(0, 1e-4, rows)),
@@ -76,16 +85,20 @@ def record_run(rng, lab, index, start_s, weather):
         humidity_pct=held("humidity_pct") + weather_humidity_pct(weather, clock_s))
 
 
-def sample_times(plan, interval_s):
-    """Sample times and, for each, the index of its segment."""
-    times_s, owners, begin_s = [], [], 0.0
+def sample_times(plan, interval_s, finer, gap_s):
+    """Times, for each the index of its segment, and whether it is written: one of `finer`, and after each turn of the head
+    none for `gap_s`."""
+    times_s, owners, written, begin_s, angle_deg = [], [], [], 0.0, plan.segments[0].angle_deg
     for owner, segment in enumerate(plan.segments):
-        step_s = max(1.0, interval_s / segment.density)
+        step_s = max(MOST_OFTEN_S, interval_s / segment.density) / finer
         inside = np.arange(0.0, segment.duration_s, step_s)
+        quiet_s = gap_s if segment.angle_deg != angle_deg else 0.0
         times_s.append(begin_s + inside)
         owners.append(np.full(len(inside), owner))
-        begin_s += step_s * len(inside)
-    return np.concatenate(times_s), np.concatenate(owners)
+        since = np.arange(len(inside)) - int(np.ceil(quiet_s / step_s))
+        written.append((since >= 0) & (since % finer == 0))
+        begin_s, angle_deg = begin_s + step_s * len(inside), segment.angle_deg
+    return np.concatenate(times_s), np.concatenate(owners), np.concatenate(written)
 
 
 def chamber_setpoint(plan, times_s, owners):

@@ -6,8 +6,9 @@
 ROOT holds a folder for each campaign, with truth.json beside CSV files. The product gets copies of the CSV files alone,
 below DIR, where its models stay too.
 
-An effect is visible if what a static map and run offsets leave of it is at least the white noise; a campaign that hides
-another says nothing about the diagnosis. Turn-on never is visible, nor, on a real rig, what the rig causes by itself.
+An effect is visible if an oracle that knows its shape and the noise has a DeltaBIC of at least 60 for it (oracle.py); a
+campaign that hides another says nothing about the diagnosis. The last table tells how often an effect is named by what the
+oracle knows: the power of the diagnosis.
 """
 
 import argparse
@@ -24,6 +25,10 @@ from statistics import median
 CLASSES = ["none", "single", "pair", "outside"]
 # A set of more names than this says nothing.
 HONEST = 2
+# What the oracle must know of what should be named.
+VISIBLE_DELTA_BIC = 60
+# Limits of the rows of the last table.
+STEPS = [-1e9, 10, 25, 60, 150, 500, 2e3, 1e4, 1e5, 1e12]
 
 
 @dataclass
@@ -47,15 +52,20 @@ class Result:
     @property
     def visible(self):
         """Whether everything hidden is."""
-        beyond = {"turn-on", *(self.truth["caused_by_rig"] if self.real_rig else [])}
-        return all(hidden["snr_static"] >= 1 and hidden["name"] not in beyond for hidden in self.truth["effects"])
+        return all(hidden["oracle_delta_bic"] >= VISIBLE_DELTA_BIC for hidden in self.truth["effects"])
 
     @property
     def right(self):
         return self.answer is not None and RIGHT[self.kind](self.truth["effects"], self.answer)
 
+    @property
+    def nothing_else(self):
+        """Whether every finding is something hidden."""
+        return self.answer is not None and all(
+            any(meets(finding, hidden) for hidden in self.truth["effects"]) for finding in self.answer["findings"])
+
     def __str__(self):
-        truth = ", ".join(f"{title(hidden)} {hidden['snr_static']:.2f}" for hidden in self.truth["effects"]) or "nothing"
+        truth = ", ".join(f"{title(hidden)} {hidden['snr_static']:.2f} ({hidden['oracle_delta_bic']:.0f})" for hidden in self.truth["effects"]) or "nothing"
         rig = f"{'real' if self.real_rig else 'perfect'} rig {self.truth['rig']['snr_static']:.2f}"
         said = f"FAILED: {self.message}" if self.answer is None else spoken(self.answer)
         return f"{self.name:11} {self.seconds:6.1f} s  {said}  | hides {truth}; {rig}"
@@ -109,6 +119,7 @@ LABELS = {
     "pair": "pair, both visible: both found",
     "outside": "outside, visible: unexplained, and nothing named",
 }
+ALONE = {"single": "single, visible: nothing named beside it", "pair": "pair, both visible: nothing named beside them"}
 
 
 class Failure(Exception):
@@ -142,8 +153,8 @@ def diagnosed(binary, work, campaign):
         return Result(campaign.name, truth, seconds, None, str(failure))
 
 
-def rate(results, kind):
-    counted = [result.right for result in results if result.kind == kind and result.visible]
+def rate(results, kind, what="right"):
+    counted = [getattr(result, what) for result in results if result.kind == kind and result.visible]
     return f"{sum(counted)}/{len(counted)}" if counted else "-"
 
 
@@ -160,11 +171,28 @@ def table(results):
     """Failed campaigns count as wrong answers as well."""
     columns = [results, [r for r in results if not r.real_rig], [r for r in results if r.real_rig]]
     rows = [[label, *(rate(column, kind) for column in columns)] for kind, label in LABELS.items()]
+    rows += [[label, *(rate(column, kind, "nothing_else") for column in columns)] for kind, label in ALONE.items()]
     rows.append(["failed", *(f"{sum(r.answer is None for r in column)}/{len(column)}" for column in columns)])
     middle, longest = zip(*map(times, columns))
     rows += [["diagnosis, median", *middle], ["diagnosis, longest", *longest]]
     lines = [["", "all", "perfect rig", "real rig"], ["---"] * 4, *rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def power(results):
+    """How often a single effect is named, by what the oracle knows of it."""
+    lines = ["| oracle's DeltaBIC | campaigns | named first | alone | something else named |", "| --- " * 5 + "|"]
+    single = [(r.truth["effects"][0]["oracle_delta_bic"], r) for r in results if r.kind == "single"]
+    for low, high in zip(STEPS, STEPS[1:]):
+        inside = [result for known, result in single if low <= known < high]
+        if not inside:
+            continue
+        named = [result for result in inside if result.right]
+        alone = [result for result in named if result.nothing_else]
+        wrong = [result for result in inside if not result.nothing_else]
+        title = f"below {high:g}" if low == STEPS[0] else f"from {low:g}"
+        lines.append(f"| {title} | {len(inside)} | {len(named)} | {len(alone)} | {len(wrong)} |")
+    return "\n".join(lines)
 
 
 def in_order(campaign):
@@ -184,6 +212,8 @@ def main():
         results.append(diagnosed(args.tempco.resolve(), args.work, campaign))
         print(results[-1], flush=True)
     print("\n" + table(results))
+    if any(result.kind == "single" for result in results):
+        print("\n" + power(results))
 
 
 if __name__ == "__main__":

@@ -28,11 +28,11 @@ class Ruler:
         self.scene, self.white_ug = scene, white_ug
         self.clean = measure(scene, [])
         self.scale_hz_per_g = scene.device.scale_hz_per_g(scene.rec.accel_g, scene.rec.temp_c)
-        self.map = self._orthonormal(self._map_columns())
+        self.map = self._orthonormal(self.map_columns())
         offsets = scene.rec.run[:, None] == np.arange(1, scene.rec.run.max() + 1)
-        self.map_and_offsets = self._orthonormal(np.hstack([self._map_columns(), offsets]))
+        self.map_and_offsets = self._orthonormal(np.hstack([self.map_columns(), offsets]))
 
-    def _map_columns(self):
+    def map_columns(self):
         """Chebyshev products x^0..3 T^0..6, x the frequency difference."""
         def scaled(values):
             return 2 * (values - values.min()) / np.ptp(values) - 1
