@@ -28,20 +28,34 @@ const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 /// anything new to read. `None` where neighbours share a state by chance at most.
 #[must_use]
 pub fn sample_sigma_g<'a>(runs: impl IntoIterator<Item = (&'a Run, &'a RunResiduals)>) -> Option<f64> {
+    let points = points(runs);
+    let same_g = same_state_g(&points);
+    sigma_within(&points, |neighbours| neighbours.windows(2).all(|pair| pair[0].apart_g(&pair[1]) <= same_g))
+}
+
+/// The same of what is left in any unit, whatever the reference does: it may never stand still, and what a map leaves makes
+/// no step where it does. `None` where there are no three samples in a row.
+#[must_use]
+pub fn sample_sigma<'a>(runs: impl IntoIterator<Item = (&'a Run, &'a RunResiduals)>) -> Option<f64> {
+    sigma_within(&points(runs), |_| true)
+}
+
+/// What was read anew, run by run.
+fn points<'a>(runs: impl IntoIterator<Item = (&'a Run, &'a RunResiduals)>) -> Vec<Vec<Point>> {
     let runs: Vec<(&Run, &RunResiduals)> = runs.into_iter().collect();
     let rows: Vec<&[Row]> = runs.iter().map(|(run, _)| run.rows.as_slice()).collect();
     let once = written_once(&rows);
-    let points: Vec<Vec<Point>> = runs
-        .iter()
-        .zip(once)
-        .map(|((run, residuals), rows)| {
-            rows.into_iter().map(|row| Point::new(&run.rows[row], residuals[row])).collect()
-        })
-        .collect();
+    let of_run = |((run, residuals), rows): (&(&Run, &RunResiduals), Vec<usize>)| {
+        rows.into_iter().map(|row| Point::new(&run.rows[row], residuals[row])).collect()
+    };
+    runs.iter().zip(once).map(of_run).collect()
+}
+
+/// Standard deviation from neighbours in one state.
+fn sigma_within(points: &[Vec<Point>], is_one_state: impl Fn(&[Point]) -> bool) -> Option<f64> {
+    let is_one_state = |neighbours: &&[Point]| is_one_state(neighbours);
     let pairs = || points.iter().flat_map(|run| run.windows(2));
     let count = pairs().count() as f64;
-    let same_g = same_state_g(&points);
-    let is_one_state = |neighbours: &&[Point]| neighbours.windows(2).all(|pair| pair[0].apart_g(&pair[1]) <= same_g);
     let steps: Vec<f64> = pairs().filter(is_one_state).map(|pair| pair[0].step_g(&pair[1]).abs()).collect();
     if (steps.len() as f64) < LEAST_SHARE * count || steps.is_empty() {
         return None;
@@ -281,6 +295,20 @@ mod tests {
     fn row(second: u64, reference_g: f64) -> Row {
         let sample = Sample::from_difference(second * 1_000_000, second as i64, 0);
         Row { sample, reference_g, reference_sigma_g: None }
+    }
+
+    #[test]
+    fn a_residual_tells_its_noise_in_any_unit_while_the_reference_sweeps() {
+        let run = Run {
+            name: "sweep".to_owned(),
+            kind: String::new(),
+            source: PathBuf::new(),
+            rows: (0..400).map(|k| row(k, (k as f64 / 40.0).sin())).collect(),
+        };
+        let residuals = |unit: f64| -> RunResiduals { (0..400).map(|k| f64::from(k * 37 % 101) * unit).collect() };
+        let sigma = |unit| sample_sigma([(&run, &residuals(unit))]).unwrap() / unit;
+        assert!(sigma(1e-6) > 1.0 && (sigma(1e-6) / sigma(1.0) - 1.0).abs() < 1e-9, "{} {}", sigma(1e-6), sigma(1.0));
+        assert_eq!(sample_sigma_g([(&run, &residuals(1e-9))]), None);
     }
 
     #[test]

@@ -18,7 +18,7 @@ pub(super) use sum_channel::SumChannel;
 
 use super::cells::{Cells, Columns, difference};
 use crate::diagnose::thresholds::{LEAST_SAMPLE_UG, SILICON_G_PER_C};
-use crate::noise::sample_sigma_g;
+use crate::noise::sample_sigma;
 use contributions::contributions;
 use residuals::residuals_beside;
 use std::sync::Arc;
@@ -69,12 +69,12 @@ impl<'a> Forward<'a> {
         self.map.residual_ug(cells, &contributions(cells, set))
     }
 
-    /// Scatter of what these effects leave from sample to sample, µg; `None` where neighbours share a state by chance at most.
+    /// Scatter of what these effects leave from sample to sample, µg; `None` where there is none to be seen.
     pub fn sample_ug(&self, set: &EffectSet) -> Option<f64> {
         let residuals = self.residual_in_ug(&self.cells.by_sample(), set);
         let all: Vec<Vec<f64>> = residuals.iter().map(|run| run.iter().copied().collect()).collect();
         let runs = self.cells.runs.iter().map(|run| run.run);
-        sample_sigma_g(runs.zip(&all)).map(|sigma| sigma.max(LEAST_SAMPLE_UG))
+        sample_sigma(runs.zip(&all)).map(|sigma| sigma.max(LEAST_SAMPLE_UG))
     }
 
     /// Derivatives of what these effects leave beside fixed ones, by their free parameters, from where they leave `base`.
