@@ -34,16 +34,27 @@ impl Polynomial {
 
     /// The same, with data weighted by `weight` and an offset of `offset_variance` (in units of the
     /// variance of a datum of weight one) shared by each run.
+    ///
+    /// It is the signal that scatters, not the reference: within a run at one position a slope of zero would be never
+    /// wrong, and runs may be free to lie off. So the signal is fitted over reference and temperature first, and what that
+    /// makes of each reference stands for the signal (classical calibration; Osborne 1991, Int. Stat. Rev. 59, 309).
     #[must_use]
-    pub fn fit_mixed(data: &[Datum], weight: impl Fn(&Datum) -> f64, offset_variance: f64) -> Self {
+    pub fn fit_mixed(data: &[Datum], weight: impl Fn(&Datum) -> f64 + Copy, offset_variance: f64) -> Self {
         let (degree_x, degree_t) = Self::degrees_for(data);
-        Self::solve(data, degree_x, degree_t, weight, offset_variance)
+        let level = levels(data);
+        let turned: Vec<Datum> =
+            data.iter().map(|datum| Datum { x: level(datum.reference_g), reference_g: datum.x, ..*datum }).collect();
+        let terms = Terms::of(data, degree_x, degree_t);
+        let signal = Self::solve(&turned, &terms, weight, offset_variance);
+        let fitted = |datum: &Datum| Datum { x: signal.evaluate(level(datum.reference_g), datum.t), ..*datum };
+        let fitted: Vec<Datum> = data.iter().map(fitted).collect();
+        Self::solve(&fitted, &terms, weight, offset_variance)
     }
 
     /// Weighted least squares with these highest powers.
     #[must_use]
     pub fn fit_degrees(data: &[Datum], degree_x: usize, degree_t: usize) -> Self {
-        Self::solve(data, degree_x, degree_t, |datum| datum.weight, 0.0)
+        Self::solve(data, &Terms::of(data, degree_x, degree_t), |datum| datum.weight, 0.0)
     }
 
     /// Of a sensor that lay still: the slope ∂a/∂x is stated, g, and only the course over temperature is fitted. Left to
@@ -65,22 +76,23 @@ impl Polynomial {
 
     fn degrees_for(data: &[Datum]) -> (usize, usize) {
         let powers = |most: usize, values: &mut dyn Iterator<Item = f64>| most.min(distinct(values).saturating_sub(1));
-        (powers(MOST_X, &mut data.iter().map(|datum| datum.x)), powers(MOST_T, &mut data.iter().map(|datum| datum.t)))
+        let level = levels(data);
+        // A level that the temperature moves is still one.
+        let powers_x = powers(MOST_X, &mut data.iter().map(|datum| datum.x));
+        (
+            powers(powers_x, &mut data.iter().map(|datum| level(datum.reference_g))),
+            powers(MOST_T, &mut data.iter().map(|datum| datum.t)),
+        )
     }
 
-    fn solve(
-        data: &[Datum],
-        degree_x: usize,
-        degree_t: usize,
-        weight: impl Fn(&Datum) -> f64,
-        offset_variance: f64,
-    ) -> Self {
-        let terms = (degree_x + 1) * (degree_t + 1);
-        let (mut normal, mut right) = (DMatrix::zeros(terms, terms), DVector::zeros(terms));
+    fn solve(data: &[Datum], terms: &Terms, weight: impl Fn(&Datum) -> f64, offset_variance: f64) -> Self {
+        let &Terms { degree_x, degree_t, .. } = terms;
+        let count = (degree_x + 1) * (degree_t + 1);
+        let (mut normal, mut right) = (DMatrix::zeros(count, count), DVector::zeros(count));
         for run in data.chunk_by(|a, b| a.run == b.run) {
-            let (mut sum, mut value, mut total) = (DVector::zeros(terms), 0.0, 0.0);
+            let (mut sum, mut value, mut total) = (DVector::zeros(count), 0.0, 0.0);
             for datum in run {
-                let (basis, weight) = (basis(degree_x, degree_t, datum.x, datum.t), weight(datum));
+                let (basis, weight) = (terms.basis(datum), weight(datum));
                 normal.ger(weight, &basis, &basis, 1.0);
                 right.axpy(weight * datum.reference_g, &basis, 1.0);
                 sum.axpy(weight, &basis, 1.0);
@@ -148,6 +160,38 @@ impl Polynomial {
     }
 }
 
+/// The products of powers that data carry.
+struct Terms {
+    degree_x: usize,
+    degree_t: usize,
+    /// Of each power of x, the highest power of t beside it; none where there are too few levels anywhere.
+    powers_t: Vec<Option<usize>>,
+}
+
+impl Terms {
+    /// A power of the signal changes with temperature only as far as there are levels enough in several parts of the range:
+    /// what only a level visited at one temperature tells of a curvature tells nothing of how that goes on.
+    fn of(data: &[Datum], degree_x: usize, degree_t: usize) -> Self {
+        let level = levels(data);
+        let part = |t: f64| (((t + 1.0) / 2.0 * (degree_t + 1) as f64) as usize).min(degree_t);
+        let in_part = |index: usize| data.iter().filter(move |datum| part(datum.t) == index);
+        let levels: Vec<usize> =
+            (0..=degree_t).map(|k| distinct(&mut in_part(k).map(|datum| level(datum.reference_g)))).collect();
+        let powers_t = |power: usize| levels.iter().filter(|count| **count > power).count().checked_sub(1);
+        let powers_t = |power: usize| if power == 0 { Some(degree_t) } else { powers_t(power) };
+        Self { degree_x, degree_t, powers_t: (0..=degree_x).map(powers_t).collect() }
+    }
+
+    /// Zero where the data carry nothing.
+    fn basis(&self, datum: &Datum) -> DVector<f64> {
+        let mut basis = basis(self.degree_x, self.degree_t, datum.x, datum.t);
+        for (terms, most) in basis.as_mut_slice().chunks_mut(self.degree_t + 1).zip(&self.powers_t) {
+            terms[most.map_or(0, |most| most + 1)..].fill(0.0);
+        }
+        basis
+    }
+}
+
 fn basis(degree_x: usize, degree_t: usize, x: f64, t: f64) -> DVector<f64> {
     products(degree_x, degree_t, |i| x.powi(i), t)
 }
@@ -168,6 +212,15 @@ fn pseudo_inverse(normal: DMatrix<f64>) -> DMatrix<f64> {
     let least = eigen.eigenvalues.max() * LEAST_INFORMATION;
     let inverted = eigen.eigenvalues.map(|value| if value > least { value.recip() } else { 0.0 });
     &eigen.eigenvectors * DMatrix::from_diagonal(&inverted) * eigen.eigenvectors.transpose()
+}
+
+/// From a reference to −1 … 1.
+fn levels(data: &[Datum]) -> impl Fn(f64) -> f64 + use<> {
+    let references_g = || data.iter().map(|datum| datum.reference_g);
+    let (low_g, high_g) =
+        (references_g().fold(f64::INFINITY, f64::min), references_g().fold(f64::NEG_INFINITY, f64::max));
+    let (middle_g, half_g) = (f64::midpoint(low_g, high_g), (high_g - low_g) / 2.0);
+    move |reference_g| if half_g > 0.0 { (reference_g - middle_g) / half_g } else { 0.0 }
 }
 
 /// How many values are further apart than [`SAME_LEVEL`].
@@ -216,5 +269,40 @@ mod tests {
     fn levels_that_are_not_there_carry_no_power() {
         let rows: Vec<Datum> = (0..20).map(|k| row(f64::from(k % 2), f64::from(k) / 10.0 - 1.0)).collect();
         assert_eq!(Polynomial::fit(&rows).degrees(), (1, 3));
+        // Two positions whose signal moves with the temperature are two levels.
+        let moved = |datum: &Datum| Datum { x: datum.x + 0.3 * datum.t, reference_g: datum.x.round(), ..*datum };
+        assert_eq!(Polynomial::fit(&rows.iter().map(moved).collect::<Vec<_>>()).degrees(), (1, 3));
+    }
+
+    #[test]
+    fn a_level_visited_at_one_temperature_says_nothing_of_a_curvature_elsewhere() {
+        let datum =
+            |level: f64, t: f64, wander: f64| Datum { reference_g: level, ..row(0.5 * level + 0.1 * t + wander, t) };
+        let two = (0..40).map(|k| datum(f64::from(k % 2) * 2.0 - 1.0, f64::from(k) / 20.0 - 1.0, 0.0));
+        let middle = (0..9).map(|k| datum(0.0, 0.3 + 1e-4 * f64::from(k), 1e-4 * f64::from(k)));
+        let fit = Polynomial::fit(&two.chain(middle).collect::<Vec<_>>());
+        assert_eq!(fit.degrees(), (2, 3));
+        for (x, t) in [(-0.6, -1.0), (0.0, 0.0), (0.6, 1.0)] {
+            assert!((fit.slope(x, t) / 2.0 - 1.0).abs() < 0.01, "{x} {t}: {}", fit.slope(x, t));
+        }
+    }
+
+    #[test]
+    fn runs_at_one_position_each_that_wander_and_lie_off_keep_the_slope() {
+        // A slope of 0.5 between runs, each of which wanders by two hundred times the noise: the wander must not be taken
+        // for a signal that the reference did not follow.
+        let run = |run: usize| {
+            let reference_g = [-0.4, 0.4, 0.0, 0.4][run];
+            (0..50).map(move |k| {
+                let t = f64::from(k) / 25.0 - 1.0;
+                let wander = 0.02 * (f64::from(k) / 9.0 + run as f64).sin();
+                Datum { x: 2.0 * reference_g + wander, t, reference_g, weight: 1.0, run }
+            })
+        };
+        let rows: Vec<Datum> = (0..4).flat_map(run).collect();
+        for offset_variance in [0.0, 1e2, 1e4] {
+            let slope = Polynomial::fit_mixed(&rows, |datum| datum.weight, offset_variance).slope(0.0, 0.0);
+            assert!((slope / 0.5 - 1.0).abs() < 0.05, "{offset_variance}: {slope}");
+        }
     }
 }
