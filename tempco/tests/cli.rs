@@ -94,6 +94,28 @@ fn with_supply(folder: &Path) {
 }
 
 #[test]
+fn an_effect_that_does_not_help_is_doubted_and_the_way_back_is_told() {
+    let folder = TempDir::new().expect("a folder");
+    let run = |arguments: &[&str]| {
+        let output = tempco(folder.path()).args(arguments).output().expect("tempco runs");
+        (output.status.code(), String::from_utf8(output.stdout).expect("text"))
+    };
+    fs::copy(SMALL, folder.path().join("small.csv")).expect("copied");
+    run(&["train", "small.csv", "-o", "model.toml", "--restarts", "2"]);
+    let before = fs::read(folder.path().join("model.toml")).expect("trained");
+    let (code, text) = run(&["add", "model.toml", "thermal-gradient", "small.csv", "-o", "with.toml"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("\nDoubtful: with thermal-gradient the held-out residual does not fall"), "{text}");
+    assert!(text.contains("\nNext:  go back to model.toml, which is as it was"), "{text}");
+    assert_eq!(fs::read(folder.path().join("model.toml")).expect("still there"), before);
+    let (code, text) = run(&["add", "model.toml", "thermal-gradient", "small.csv", "-o", "with.toml", "--json"]);
+    let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert!(code == Some(1) && value["doubts"].as_array().is_some_and(|doubts| !doubts.is_empty()), "{value}");
+    // To take it out again is no doubt.
+    assert_eq!(run(&["remove", "with.toml", "thermal-gradient", "small.csv", "-o", "without.toml"]).0, Some(0));
+}
+
+#[test]
 fn an_effect_of_ones_own_is_added_shown_verified_and_removed() {
     const TEXT: &str = "(supply_v - 5) * level_g";
     let folder = TempDir::new().expect("a folder");

@@ -1,5 +1,6 @@
 //! Numerics: solvers know residuals and derivatives, no physics; problems know no solver.
 
+pub mod at_bound;
 pub mod dataset;
 pub mod effects;
 pub mod firefly;

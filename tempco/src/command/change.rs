@@ -1,17 +1,17 @@
 //! What `add` and `remove` share: retrain a model with other effects, print the ladder of residuals.
 
 use super::train::train_with_bar;
-use crate::failure::{Answer, Failure};
+use crate::failure::Failure;
 use crate::output::{Force, Kind, Output};
 use crate::render;
 use crate::subject::Subject;
 use crate::table::Table;
 use crate::terminal::say;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use trainer::campaign::{Campaign, Split};
 use trainer::compare::{Comparison, compare};
-use trainer::ladder::{BARE, Rung};
+use trainer::ladder::{BARE, Rung, doubts};
 use trainer::model::Model;
 use trainer::retrain;
 use trainer::train::{EffectChoice, TrainSettings, Trained, check};
@@ -38,11 +38,11 @@ pub struct Request {
 }
 
 impl Request {
-    /// Retrains the model with what `effects` makes of its effects and the one that is asked for.
+    /// Retrains the model with what `effects` makes of its effects and the one that is asked for, writes it and tells of it.
     pub fn carry_out(
         &self,
         effects: impl FnOnce(&Change, EffectChoice) -> Result<Vec<EffectChoice>, Failure>,
-    ) -> Result<Answer, Failure> {
+    ) -> Result<Ladder, Failure> {
         let output = Output::file(&self.output, Kind::Model, "-o", self.force);
         let output = output.reading(self.subject.files().iter().chain([&self.model]));
         output.check()?;
@@ -51,6 +51,16 @@ impl Request {
         let change = Change::of(&model, &campaign)?.scaled(self.subject.scale_factor);
         let effects = effects(&change, self.subject.effect())?;
         ladder(&change, &effects, &output, self.json)
+    }
+
+    /// The model as it was before.
+    pub fn model(&self) -> &Path {
+        &self.model
+    }
+
+    /// Whether the answer is for programs.
+    pub const fn is_json(&self) -> bool {
+        self.json
     }
 }
 
@@ -67,6 +77,8 @@ pub struct Ladder {
     pub rungs: Vec<Rung>,
     pub model: Model,
     pub comparison: Comparison,
+    /// What speaks against the effect on the last rung.
+    pub doubts: Vec<String>,
 }
 
 impl<'a> Change<'a> {
@@ -126,7 +138,8 @@ impl<'a> Change<'a> {
             top = Some((model, comparison));
         }
         let (model, comparison) = top.ok_or_else(|| Failure::new("nothing was trained"))?;
-        Ok(Ladder { rungs, model, comparison })
+        let doubts = doubts(&model, self.campaign, &rungs);
+        Ok(Ladder { rungs, model, comparison, doubts })
     }
 
     fn settings(&self, effects: &[EffectChoice]) -> TrainSettings {
@@ -135,27 +148,29 @@ impl<'a> Change<'a> {
 }
 
 /// Climbs with a progress bar, writes the model on the last rung, and prints the ladder.
-fn ladder(change: &Change, effects: &[EffectChoice], output: &Output, json: bool) -> Result<Answer, Failure> {
+fn ladder(change: &Change, effects: &[EffectChoice], output: &Output, json: bool) -> Result<Ladder, Failure> {
     let train =
         |split: &Split, settings: &TrainSettings, name: &str| train_with_bar(change.campaign, split, settings, name);
-    let Ladder { rungs, model, comparison } = change.climb(effects, train, |_| ())?;
+    let ladder = change.climb(effects, train, |_| ())?;
+    let Ladder { rungs, model, comparison, doubts } = &ladder;
     output.write(model.to_text().as_bytes())?;
     if json {
         let mut value = serde_json::json!(comparison);
         value["ladder"] = serde_json::json!(rungs);
         value["effects"] = serde_json::json!(model.effects);
+        value["doubts"] = serde_json::json!(doubts);
         say!("{value:#}")?;
     } else {
         let noise = comparison.noise_floor_ug.map(|noise_ug| ("noise from sample to sample", noise_ug));
-        say!("{}", rungs_table(&rungs, noise))?;
+        say!("{}", rungs_table(rungs, noise))?;
         for effect in &model.effects {
             let values: Vec<String> =
                 effect.parameters.iter().map(|(name, value)| format!("{name} = {value:.4e}")).collect();
             say!("  {}: {}", effect.title(), values.join(", "))?;
         }
-        say!("\n{}Model written to {}", render::comparison(&comparison), output.path().display())?;
+        say!("\n{}Model written to {}", render::comparison(comparison), output.path().display())?;
     }
-    Ok(Answer::Yes)
+    Ok(ladder)
 }
 
 /// The residual on held-out runs, effect by effect, as figures and as bars.

@@ -14,6 +14,7 @@ pub struct Remove {
 
 impl Remove {
     pub fn run(&self) -> Result<Answer, Failure> {
-        self.request.carry_out(|change, effect| change.without(&effect))
+        self.request.carry_out(|change, effect| change.without(&effect))?;
+        Ok(Answer::Yes)
     }
 }

@@ -32,6 +32,8 @@ pub struct Entry {
     pub columns: Arc<Columns>,
     pub simpler: Vec<Simpler>,
     pub ladder: Vec<Rung>,
+    /// What speaks against the effect on its last rung.
+    pub doubts: Vec<String>,
     pub diagnosis: Option<Arc<Diagnosis>>,
     pub parity: Option<Parity>,
     pub exported: Option<Exported>,
@@ -100,6 +102,7 @@ impl Entry {
             columns: Arc::new(columns),
             simpler: Vec::new(),
             ladder: Vec::new(),
+            doubts: Vec::new(),
             diagnosis: None,
             parity: None,
             exported: None,

@@ -101,6 +101,7 @@ fn model(session: &Session, entry: &Entry) -> Value {
         "comparison": entry.comparison,
         "simpler": entry.simpler,
         "ladder": entry.ladder,
+        "doubts": entry.doubts,
         "diagnosis": entry.diagnosis.as_deref(),
         "verdict": entry.diagnosis.as_deref().map(verdict),
         "to_add": entry.diagnosis.as_deref().and_then(first_to_add),

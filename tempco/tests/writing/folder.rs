@@ -49,8 +49,8 @@ pub fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 /// Every command that writes a file, with FILE for its name.
 pub const WRITERS: [&[&str]; 9] = [
     &["train", "small.csv", "-o", "FILE", "--restarts", "1"],
-    &["add", "model.toml", "thermal-lag", "small.csv", "-o", "FILE"],
-    &["remove", "model.toml", "thermal-lag", "small.csv", "-o", "FILE"],
+    &["add", "model.toml", "warm-up", "small.csv", "-o", "FILE"],
+    &["remove", "model.toml", "warm-up", "small.csv", "-o", "FILE"],
     &["export", "model.toml", "-o", "FILE"],
     &["export", "model.toml", "--sign", "factory.key", "-o", "FILE"],
     &["compare", "model.toml", "small.csv", "--report", "FILE"],

@@ -50,7 +50,7 @@ fn quick(port: &str) -> Vec<Case<'_>> {
     vec![
         again,
         Case::of(1, &["added.toml"]),
-        Case::new(&["remove", "with.toml", "thermal-lag", "small.csv", "-o", "without.toml"], &["without.toml"]),
+        Case::new(&["remove", "with.toml", "warm-up", "small.csv", "-o", "without.toml"], &["without.toml"]),
         Case::of(3, &["calibration.bin"]),
         Case::of(3, &["calibration.hex"]),
         Case::of(4, &["signed.bin"]),
@@ -211,7 +211,7 @@ fn whoever_is_killed_leaves_the_old_file_or_the_new_one_and_nothing_else() {
     let folder = worked_in();
     let folder = folder.path();
     let served = Served::start(folder);
-    said(folder, 0, &["add", "model.toml", "thermal-lag", "small.csv", "-o", "with.toml"]);
+    said(folder, 0, &["add", "model.toml", "warm-up", "small.csv", "-o", "with.toml"]);
     let (quick, mut random) = (quick(&served.port), Random(7));
     let mut count = 0;
     for case in &quick {

@@ -129,8 +129,6 @@ pub const CONFOUNDED: f64 = 10.0;
 pub const CONFOUNDED_SHARE: f64 = 0.1;
 /// So many effects go from the screening into the final, as judged by the noise as estimated and by a small one.
 pub const FINALISTS: [usize; 2] = [4, 3];
-/// A shape this close to its bound, as a ratio, was stopped by it.
-pub const AT_BOUND: f64 = 1.05;
 /// So many effects are asked what they predict.
 pub const PREDICTIVE_ASKED: usize = 8;
 /// What was left out must be read with this share of the error, or no more than a resemblance was found.

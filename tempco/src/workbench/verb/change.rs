@@ -75,7 +75,7 @@ fn climbed(
     let train =
         |split: &Split, settings: &TrainSettings, _: &str| train(campaign, split, settings, job).map_err(Failure::from);
     let ladder = Change::of(model, campaign)?.climb(effects, train, |rung| job.rung(rung))?;
-    let Ladder { rungs, model, comparison } = ladder;
+    let Ladder { rungs, model, comparison, doubts } = ladder;
     let entry = Entry::compared(origin, model, comparison, campaign)?;
-    Ok(keep(Entry { ladder: rungs, ..entry }))
+    Ok(keep(Entry { ladder: rungs, doubts, ..entry }))
 }

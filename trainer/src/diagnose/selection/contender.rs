@@ -3,7 +3,7 @@
 use crate::diagnose::answer::{Judged, Outcome};
 use crate::diagnose::forward::{EffectSet, is_placed, name_of};
 use crate::diagnose::problem::NoiseModels;
-use crate::diagnose::thresholds::AT_BOUND;
+use crate::fit::at_bound::at_bound;
 use crate::fit::effects::Chosen;
 use firmware_core::effect::Role;
 use std::ops::RangeInclusive;
@@ -39,24 +39,7 @@ impl Contender {
     /// Whether a shape was stopped by the bound of what makes physical sense, or sits where nothing was measured:
     /// then it is something else.
     pub fn is_at_bound(&self, range_c: &RangeInclusive<f64>) -> bool {
-        let mut parameters = self.effect.about.parameters.iter().zip(&self.values);
-        parameters.any(|(parameter, value)| match parameter.role {
-            Role::Shape => {
-                (*value < parameter.low * AT_BOUND && !parameter.sound_limit.is_low())
-                    || (*value * AT_BOUND > parameter.high && !parameter.sound_limit.is_high())
-            }
-            Role::Location if parameter.unit == "°C" => {
-                let reach_c = self.reach_c_per_g();
-                *value + reach_c < *range_c.start() || *value - reach_c > *range_c.end()
-            }
-            Role::Location | Role::Amplitude | Role::Origin => false,
-        })
-    }
-
-    /// How far 1 g moves the place where the effect sits, °C.
-    fn reach_c_per_g(&self) -> f64 {
-        let pairs = self.effect.about.parameters.iter().zip(&self.values);
-        pairs.filter(|(parameter, _)| parameter.unit == "°C/g").map(|(_, value)| value.abs()).sum()
+        at_bound(self.effect.about, &self.values, range_c).is_some()
     }
 
     /// As it is told.
@@ -115,36 +98,6 @@ mod tests {
     fn contender(name: &str, values: &[f64], delta_bic: f64) -> Contender {
         let effect = Chosen::of(effect::about(name).unwrap());
         Contender { effect, values: values.to_vec(), delta_bic, noises: None, determined: true }
-    }
-
-    fn is_at_bound(name: &str, values: &[f64]) -> bool {
-        contender(name, values, 0.0).is_at_bound(&(-10.0..=50.0))
-    }
-
-    #[test]
-    fn a_shape_at_its_bound_was_stopped_unless_the_formula_has_a_sound_limit_there() {
-        // From 5 s to 36,000 s; a gradient from 0.5 s, where the rate is not smoothed at all, to 300 s.
-        assert!(is_at_bound("warm-up", &[1e-4, 5.2]) && is_at_bound("warm-up", &[1e-4, 35_000.0]));
-        assert!(!is_at_bound("warm-up", &[1e-4, 5.3]) && !is_at_bound("warm-up", &[1e-4, 34_000.0]));
-        assert!(!is_at_bound("thermal-gradient", &[1e-3, 0.5]) && is_at_bound("thermal-gradient", &[1e-3, 299.0]));
-        // An amplitude at its bound is a large effect.
-        assert!(!is_at_bound("warm-up", &[0.1, 600.0]));
-    }
-
-    #[test]
-    fn a_place_is_at_bound_where_nothing_was_measured_that_its_shift_could_reach() {
-        assert!(
-            !is_at_bound("mode-crossing", &[1e-4, 2.0, 49.0, 0.0])
-                && is_at_bound("mode-crossing", &[1e-4, 2.0, 51.0, 0.0])
-        );
-        assert!(
-            !is_at_bound("mode-crossing", &[1e-4, 2.0, 51.0, -3.0])
-                && is_at_bound("mode-crossing", &[1e-4, 2.0, 54.0, 3.0])
-        );
-        assert!(
-            is_at_bound("mode-crossing", &[1e-4, 2.0, -14.0, 3.0])
-                && !is_at_bound("mode-crossing", &[1e-4, 2.0, -12.0, 3.0])
-        );
     }
 
     #[test]

@@ -3,7 +3,8 @@
 use crate::diagnose::forward::{EffectSet, amplitudes};
 use crate::diagnose::problem::{GlsPair, NoiseModels, Problem, fixed};
 use crate::diagnose::regression::Score;
-use crate::diagnose::thresholds::{AT_BOUND, REMEMBERED, SIGNIFICANT_SIGMA};
+use crate::diagnose::thresholds::{REMEMBERED, SIGNIFICANT_SIGMA};
+use crate::fit::at_bound::AT_BOUND;
 use firmware_core::effect::{Parameter, Role};
 use nalgebra::DVector;
 

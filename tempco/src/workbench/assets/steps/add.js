@@ -53,7 +53,8 @@ function ladder(state, model, working) {
       make("strong", {}, ug(last)),
       last < first ? `: ${fixed((1 - (last / first) ** 2) * 100, 0)} % of its power is gone.` : ".",
     );
-  return make("div", { class: "outcome" }, fell, list);
+  const doubts = model.doubts.map((doubt) => make("p", { class: "warning" }, doubt, "."));
+  return make("div", { class: "outcome" }, fell, ...doubts, list);
 }
 
 function inModel(state, model, context) {
