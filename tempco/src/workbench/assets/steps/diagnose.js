@@ -216,7 +216,7 @@ function candidates({ candidates: all }) {
   if (!all.length) return undefined;
   const number = (text) => ({ number: text });
   const rows = all.map((one) => ({
-    cells: [one.effect, one.delta_bic.toFixed(0), one.held_out_ratio?.toFixed(3) ?? "", one.reason],
+    cells: [one.effect, fixed(one.delta_bic, 0), fixed(one.held_out_ratio, 3), one.reason],
   }));
   return make(
     "details",
