@@ -18,7 +18,7 @@ pub(super) use contender::{Contender, Found, Searched};
 pub(super) use cross_validation::{HeldOut, as_it_is, held_out, predicted};
 pub(super) use forward_selection::{inexact, missing};
 pub(super) use identifiability::{Screening, unobservable};
-pub(super) use predictive::{is_worse, most_predictive};
+pub(super) use predictive::{is_worse, most_predictive, reads_worse};
 pub(super) use screening::screen;
 pub(super) use starts::starts;
 pub(super) use uncertainty::standard_uncertainties;

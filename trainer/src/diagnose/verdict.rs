@@ -15,7 +15,7 @@ use super::problem::{
 };
 use super::selection::{
     Candidate, Found, HeldOut, Screening, Searched, as_it_is, held_out, inexact, is_worse, missing, most_predictive,
-    predicted, unobservable, with_channels,
+    predicted, reads_worse, unobservable, with_channels,
 };
 use super::thresholds::{JOINT_STEPS, LEAST_DELTA_BIC, LOWERED, MOST_FINDINGS, SURELY_AT_BOUND, WEAK_DELTA_BIC};
 use crate::campaign::Campaign;
@@ -243,6 +243,13 @@ impl<'a> Driver<'a> {
         Some(Findings { steps: vec![step], ..predictive })
     }
 
+    /// Takes all findings back: they do not hold for what was left out.
+    fn forget_all(&self, found: &mut Findings<'a>) {
+        (found.problem, found.known) = (self.problem.clone(), self.start.clone());
+        let names: Vec<String> = found.steps.drain(..).map(|step| name_of(&step.winner.effect).to_owned()).collect();
+        names.iter().for_each(|name| found.outcome_of(name, &Outcome::NotPredictive));
+    }
+
     fn answer(&self, campaign: &Campaign, mut found: Findings<'a>) -> Diagnosis {
         let (problem, start) = (self.problem, self.start);
         let structured = is_structured(&found.problem, &found.noises.delta);
@@ -252,26 +259,32 @@ impl<'a> Driver<'a> {
             && !found.steps.is_empty()
             && structure_ug(&found.problem, &found.known) > LOWERED * structure_ug(problem, start)
         {
-            (found.problem, found.known) = (problem.clone(), start.clone());
-            let names: Vec<String> =
-                found.steps.drain(..).map(|step| name_of(&step.winner.effect).to_owned()).collect();
-            names.iter().for_each(|name| found.outcome_of(name, &Outcome::NotPredictive));
+            self.forget_all(&mut found);
         }
         // Predicted as well as the noise without the findings allows.
         let noises = found.steps.first().map_or(&found.noises, |step| &step.noises).beside(&found.noises.initial);
         let own = predicted(problem, start, &noises);
-        let after = (!found.steps.is_empty()).then(|| predicted(&found.problem, &found.known, &found.noises));
+        let mut after = (!found.steps.is_empty()).then(|| predicted(&found.problem, &found.known, &found.noises));
+        let misleads = after.as_ref().is_some_and(|after| reads_worse(&own, after));
+        if misleads {
+            self.forget_all(&mut found);
+            after = None;
+        }
         let before = self.before.as_ref().unwrap_or(&own);
         let (residual_ug, before_ug) = (before.residual_ug, before.structure_ug());
         // What training leaves will fall as much as what is predicted without training falls.
         let ratio = |after: &HeldOut| after.structure_ug() / own.structure_ug();
         let after_ug = after.as_ref().map_or(before_ug, |after| before_ug * ratio(after));
         let lack_of_fit = lack_of_fit(&found.problem, &found.known, &found.noises, &campaign.channels);
-        let unexplained =
-            structured || found.at_bound > SURELY_AT_BOUND || found.formula.is_some() || !lack_of_fit.is_empty();
+        let unexplained = misleads
+            || structured
+            || found.at_bound > SURELY_AT_BOUND
+            || found.formula.is_some()
+            || !lack_of_fit.is_empty();
         let dependences =
             dependences((problem, start), (&found.problem, &found.known), &found.noises, &campaign.channels);
         let findings = findings(problem, start, &found, residual_ug, [&own, after.as_ref().unwrap_or(&own)]);
+        let residual_after_ug = findings.last().map_or(residual_ug, |finding| finding.residual_after_ug);
         let verdict = match (findings.is_empty(), unexplained) {
             (true, true) => Verdict::Unexplained,
             (true, false) => Verdict::NothingMissing,
@@ -281,15 +294,16 @@ impl<'a> Driver<'a> {
         Diagnosis {
             verdict,
             residual_ug,
-            residual_after_ug: findings.last().map_or(residual_ug, |finding| finding.residual_after_ug),
+            residual_after_ug,
             noise_floor_ug: problem.sample_ug,
             predictable_ug: before_ug,
             predictable_after_ug: after_ug,
             explainable: explainable(before_ug, after_ug, &found.noises.delta),
             findings,
-            candidates: std::mem::take(&mut found.judged),
+            candidates: found.told(),
             unobservable: Vec::new(),
-            unexplained: unexplained.then(|| unexplained_rest(&found, &lack_of_fit, &dependences, campaign)),
+            unexplained: unexplained
+                .then(|| unexplained_rest(&found, &lack_of_fit, &dependences, campaign, residual_after_ug)),
             dependences,
             noise: reported(&found.noises.delta),
         }

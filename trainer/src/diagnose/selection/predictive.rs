@@ -47,10 +47,13 @@ pub struct Prediction {
 }
 
 /// Whether what was left out is read worse, with what is each run's own and without.
+pub fn reads_worse(before: &HeldOut, after: &HeldOut) -> bool {
+    after.residual_ug > NO_WORSE * before.residual_ug && after.structure_ug() > NO_WORSE * before.structure_ug()
+}
+
+/// Whether it is read worse and is less likely, too: an effect beside which another is missing may read worse alone.
 pub fn is_worse(before: &HeldOut, after: &HeldOut) -> bool {
-    after.residual_ug > NO_WORSE * before.residual_ug
-        && after.structure_ug() > NO_WORSE * before.structure_ug()
-        && after.deviance > before.deviance
+    reads_worse(before, after) && after.deviance > before.deviance
 }
 
 /// The effect with which what was left out is predicted far better than without, wherever a wander that large hides
@@ -142,6 +145,7 @@ mod tests {
             [held(60.0, 20.0, 1001.0), held(50.0, 30.0, 1001.0), held(50.4, 20.1, 1001.0), held(60.0, 30.0, 900.0)]
         {
             assert!(!is_worse(&before, &after));
+            assert_eq!(reads_worse(&before, &after), after.deviance < before.deviance);
         }
     }
 

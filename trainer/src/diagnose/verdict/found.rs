@@ -57,6 +57,16 @@ impl<'a> Findings<'a> {
         self.judged.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     }
 
+    /// Every effect with what came of it in the end: what was found for a while was made superfluous by what came later.
+    pub fn told(&self) -> Vec<Judged> {
+        let is_finding = |one: &Judged| self.steps.iter().any(|step| name_of(&step.winner.effect) == one.effect);
+        let mut judged = self.judged.clone();
+        for one in judged.iter_mut().filter(|one| one.outcome == Outcome::Found && !is_finding(one)) {
+            one.outcome = Outcome::Superfluous;
+        }
+        judged
+    }
+
     /// Corrects what came of an effect.
     pub fn outcome_of(&mut self, effect: &str, outcome: &Outcome) {
         self.judged.iter_mut().filter(|one| one.effect == effect).for_each(|one| one.outcome = outcome.clone());
@@ -102,5 +112,9 @@ mod tests {
             ]
         );
         assert_eq!(found.judged[1].outcome.reason(), "explains the same as thermal-lag");
+        // What a later search finds again was dropped before, unless it is among the findings.
+        found.outcome_of("warm-up", &Outcome::Found);
+        let outcomes: Vec<&str> = found.told().iter().map(|one| one.outcome.word()).collect();
+        assert_eq!(outcomes, ["found", "explained", "superfluous", "weak"]);
     }
 }

@@ -35,12 +35,14 @@ pub fn explainable(before_ug: f64, after_ug: f64, noise: &NoiseModel) -> f64 {
     if excess > 0.0 { ((before_ug.powi(2) - after_ug.powi(2)) / excess).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// What the rest follows, the surest sign first.
+/// What the rest follows, the surest sign first. It is no larger than all that is left, `most_ug`: a structure is sized where it
+/// is strongest, and a wander over an hour where few runs last so long.
 pub fn unexplained_rest(
     found: &Findings,
     lack_of_fit: &[LackOfFit],
     dependences: &[Dependence],
     campaign: &Campaign,
+    most_ug: f64,
 ) -> Unexplained {
     let surely = dependences.iter().filter(|one| one.chance_after < LEAST_CHANCE && one.after_ug > 0.0);
     let mut sizes: Vec<(f64, &String)> = surely.map(|one| (one.after_ug, &one.on)).collect();
@@ -63,6 +65,6 @@ pub fn unexplained_rest(
         depends_on,
         period_s: lack_of_fit.iter().find_map(|one| one.period_s),
         formula,
-        residual_ug: wander_ug(&found.noises.delta).max(largest_ug),
+        residual_ug: wander_ug(&found.noises.delta).max(largest_ug).min(most_ug),
     }
 }
