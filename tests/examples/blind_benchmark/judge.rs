@@ -127,6 +127,7 @@ mod tests {
             predictable_after_ug: 5.0,
             explainable: 1.0,
             findings: findings.iter().map(finding).collect(),
+            candidates: Vec::new(),
             unobservable: Vec::new(),
             unexplained: None,
             dependences: Vec::new(),
