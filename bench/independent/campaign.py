@@ -9,13 +9,12 @@ from files import columns_of, write_campaign
 from history import history_of
 from listed import ALSO_ACCEPTABLE, LISTED
 from noise import add_noise, draw_noise, noise_ug
-from outside import OUTSIDE
 from oracle import Oracle
+from outside import OUTSIDE
 from protocol import draw_other_lab, draw_rich_lab, draw_scarce_lab
 from recording import record
 from rig import draw_rig, rig_error_g
 from sizes import Ruler, measure, tune
-
 
 # Of what is hidden behind a static map, in units of the white noise.
 SIZES = (0.1, 1000.0)
@@ -61,7 +60,6 @@ def simulate(rng, campaign_class, lab_name, real_rig, factories, needs, folder):
         "class": campaign_class, "lab": lab_name, "frequency_style": lab.frequency_style, "cross_g": lab.cross,
         "auxiliary": sorted(lab.auxiliary), "runs": len(rec.kind), "rows": len(rec.run),
         "effects": describe(hidden, ruler, oracle),
-        "caused_by_rig": ["turn-on", "misalignment", "cross-axis"] if rig.turn_on_ug else [],
         "rig": vars(rig) | ruler.sizes(measure(scene, [], rig_g)), "noise": vars(noise), "device": vars(device),
     }
     (folder / "truth.json").write_text(json.dumps(truth, indent=1) + "\n")

@@ -21,7 +21,10 @@ class History:
 
 
 def history_of(rec, written):
-    """What the device goes through; `written` says which rows of the recording are in the files. Between runs the device cools to the room in an hour and lies at 0 g; two hours before a run it is set for that."""
+    """What the device goes through; `written` says which rows of the recording are in the files.
+
+    Between runs the device cools to the room in an hour and lies at 0 g; two hours before a run it is set for that.
+    """
     columns = [rec.clock_s, rec.temp_c, rec.accel_g, rec.humidity_pct, written]
     pieces, starts = [], list(rec.run_starts) + [len(rec.run)]
     for begin, end in zip(starts, starts[1:]):

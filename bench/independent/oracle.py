@@ -3,10 +3,8 @@
 import numpy as np
 
 from device import UG_PER_G
+from noise import RELAXATION_S, slope_ug_per_k
 from rig import RAD_PER_ARCSEC, indexings
-
-# Of each relaxation process, s.
-RELAXATION_S = 20.0 * 4.0 ** np.arange(5)
 
 
 class Oracle:
@@ -18,28 +16,24 @@ class Oracle:
     """
 
     def __init__(self, ruler, noise, rig):
-        self.ruler, rec = ruler, ruler.scene.rec
-        self.filter = Whitening(noise, ruler, rec)
+        rec = ruler.scene.rec
+        self.filter = Whitening(noise, ruler.scene.device, rec)
         offsets = rec.run[:, None] == np.arange(rec.run.max() + 1)
         free = np.hstack([ruler.map_columns(), offsets])
-        random_ug = np.hstack([columns for columns in rig_columns(rig, rec)] or [np.zeros((len(rec.run), 0))])
-        white = self.filter.of(np.hstack([free, random_ug]))
+        random_ug = np.hstack([np.zeros((len(rec.run), 0)), *rig_columns(rig, rec)])
         # A column of one standard deviation that is held to nothing with weight one: a Bayesian's prior, a ridge.
         held = np.hstack([np.zeros((random_ug.shape[1], free.shape[1])), np.eye(random_ug.shape[1])])
-        self.nuisance, self.held = white, held
+        self.nuisance = np.vstack([self.filter.of(np.hstack([free, random_ug])), held])
 
     def delta_bic(self, shape_ug, others_ug):
-        columns = self.filter.of(np.column_stack([shape_ug, *others_ug]))
-        nuisance = np.hstack([np.vstack([self.nuisance, self.held]), self._padded(columns[:, 1:])])
-        shape = self._padded(columns[:, :1])[:, 0]
+        white = self.filter.of(np.column_stack([shape_ug, *others_ug]))
+        white = np.vstack([white, np.zeros((len(self.nuisance) - len(white), white.shape[1]))])
+        shape, nuisance = white[:, 0], np.hstack([self.nuisance, white[:, 1:]])
         scale = np.linalg.norm(nuisance, axis=0)
         u, weight, _ = np.linalg.svd(nuisance / np.where(scale > 0, scale, 1), full_matrices=False)
         basis = u[:, weight > 1e-9 * weight[0]]
         left = shape - basis @ (basis.T @ shape)
         return float(left @ left - np.log(len(shape_ug)))
-
-    def _padded(self, columns):
-        return np.vstack([columns, np.zeros((len(self.held), columns.shape[1]))])
 
 
 def rig_columns(rig, rec):
@@ -55,10 +49,8 @@ def rig_columns(rig, rec):
 class Whitening:
     """Innovations over their standard deviation, for white noise beside relaxations and a random walk from each run's start."""
 
-    def __init__(self, noise, ruler, rec):
-        device = ruler.scene.device
-        slope_ug_per_k = UG_PER_G * abs(device.mismatch[0]) / (2 * device.s1_per_g)
-        self.white_ug2 = noise.white_ug**2 + (noise.thermometer_k * slope_ug_per_k) ** 2
+    def __init__(self, noise, device, rec):
+        self.white_ug2 = noise.white_ug**2 + (noise.thermometer_k * slope_ug_per_k(device)) ** 2
         step_s = np.maximum(np.diff(rec.time_s, prepend=0.0), 0)
         relaxed = np.exp(-step_s[:, None] / RELAXATION_S)
         self.keep = np.hstack([relaxed, np.ones((len(step_s), 1))])

@@ -77,7 +77,8 @@ def record_run(rng, lab, index, start_s, weather):
 
     rows = len(time_s)
     return dict(
-        written=written, run=np.full(rows, index), kind=plan.kind, time_s=time_s, power_on_s=time_s + on_before_s, clock_s=clock_s,
+        written=written, run=np.full(rows, index), kind=plan.kind,
+        time_s=time_s, power_on_s=time_s + on_before_s, clock_s=clock_s,
         temp_c=temp_c, angle_deg=held("angle_deg"),
         supply_v=3.3 + held("supply_v") + rng.normal(0, 5e-4, rows),
         vibration_g2=np.abs(held("vibration_g2") * (1 + rng.normal(0, 0.02, rows)) + rng.normal(0, 1e-4, rows)),

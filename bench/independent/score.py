@@ -65,7 +65,7 @@ class Result:
             any(meets(finding, hidden) for hidden in self.truth["effects"]) for finding in self.answer["findings"])
 
     def __str__(self):
-        truth = ", ".join(f"{title(hidden)} {hidden['snr_static']:.2f} ({hidden['oracle_delta_bic']:.0f})" for hidden in self.truth["effects"]) or "nothing"
+        truth = ", ".join(map(measured, self.truth["effects"])) or "nothing"
         rig = f"{'real' if self.real_rig else 'perfect'} rig {self.truth['rig']['snr_static']:.2f}"
         said = f"FAILED: {self.message}" if self.answer is None else spoken(self.answer)
         return f"{self.name:11} {self.seconds:6.1f} s  {said}  | hides {truth}; {rig}"
@@ -74,6 +74,11 @@ class Result:
 def title(hidden):
     """What has no name in the product's list goes by its description."""
     return hidden["description"] if hidden["name"] == "outside" else hidden["name"]
+
+
+def measured(hidden):
+    """What is hidden, what a static map leaves of it in units of the noise, and what the oracle knows of it."""
+    return f"{title(hidden)} {hidden['snr_static']:.2f} ({hidden['oracle_delta_bic']:.0f})"
 
 
 def spoken(answer):
