@@ -164,8 +164,8 @@ impl Polynomial {
 struct Terms {
     degree_x: usize,
     degree_t: usize,
-    /// Of each power of x, the highest power of t beside it; none where there are too few levels anywhere.
-    powers_t: Vec<Option<usize>>,
+    /// Of each power of x, how many powers of t stand beside it.
+    powers_t: Vec<usize>,
 }
 
 impl Terms {
@@ -177,16 +177,16 @@ impl Terms {
         let in_part = |index: usize| data.iter().filter(move |datum| part(datum.t) == index);
         let levels: Vec<usize> =
             (0..=degree_t).map(|k| distinct(&mut in_part(k).map(|datum| level(datum.reference_g)))).collect();
-        let powers_t = |power: usize| levels.iter().filter(|count| **count > power).count().checked_sub(1);
-        let powers_t = |power: usize| if power == 0 { Some(degree_t) } else { powers_t(power) };
+        let parts_with = |power: usize| levels.iter().filter(|count| **count > power).count();
+        let powers_t = |power: usize| if power == 0 { degree_t + 1 } else { parts_with(power) };
         Self { degree_x, degree_t, powers_t: (0..=degree_x).map(powers_t).collect() }
     }
 
     /// Zero where the data carry nothing.
     fn basis(&self, datum: &Datum) -> DVector<f64> {
         let mut basis = basis(self.degree_x, self.degree_t, datum.x, datum.t);
-        for (terms, most) in basis.as_mut_slice().chunks_mut(self.degree_t + 1).zip(&self.powers_t) {
-            terms[most.map_or(0, |most| most + 1)..].fill(0.0);
+        for (beside, powers_t) in basis.as_mut_slice().chunks_mut(self.degree_t + 1).zip(&self.powers_t) {
+            beside[*powers_t..].fill(0.0);
         }
         basis
     }
