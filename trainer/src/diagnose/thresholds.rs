@@ -4,6 +4,7 @@
 //! `realistic`; `docs/benchmarks.md` has the figures), and `git log -S NAME` tells when. Changing one is a change of the
 //! answers: run that benchmark, and `bench/independent`, which was made by another hand, before and after.
 //!
+//! Where a coefficient is at its bound is asked by the training, too, and stands in `fit/at_bound.rs`.
 //! Steps of derivatives, sizes of blocks and the like stand where they are used: they decide nothing.
 
 // Cells.

@@ -202,9 +202,7 @@ impl<'a> Driver<'a> {
             if delta_bic >= LEAST_DELTA_BIC {
                 break;
             }
-            let name = name_of(&found.steps.remove(step).winner.effect).to_owned();
-            found.outcome_of(&name, &Outcome::Superfluous);
-            dropped.push(name);
+            dropped.push(name_of(&found.steps.remove(step).winner.effect).to_owned());
             (found.problem, found.known) = (rescaled(problem, &known), known);
             found.noises = self.refined(&found.problem, &found.known, &found.noises);
         }
@@ -238,9 +236,8 @@ impl<'a> Driver<'a> {
         let known = self.start.with(&step.winner.effect, &step.winner.values);
         let problem = carried(self.problem, &known, &found.noises)?;
         let noises = self.refined(&problem, &known, &found.noises);
-        let mut predictive = Findings { judged: found.judged.clone(), ..Findings::nothing_yet(problem, known, noises) };
-        predictive.outcome_of(name_of(&step.winner.effect), &Outcome::Found);
-        Some(Findings { steps: vec![step], ..predictive })
+        let judged = found.judged.clone();
+        Some(Findings { steps: vec![step], judged, ..Findings::nothing_yet(problem, known, noises) })
     }
 
     /// Takes all findings back: they do not hold for what was left out.

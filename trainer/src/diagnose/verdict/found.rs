@@ -57,14 +57,16 @@ impl<'a> Findings<'a> {
         self.judged.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     }
 
-    /// Every effect with what came of it in the end: what was found for a while was made superfluous by what came later.
+    /// Every effect with what came of it in the end: the findings were found, and what was found for a while was made
+    /// superfluous by what came later.
     pub fn told(&self) -> Vec<Judged> {
         let is_finding = |one: &Judged| self.steps.iter().any(|step| name_of(&step.winner.effect) == one.effect);
-        let mut judged = self.judged.clone();
-        for one in judged.iter_mut().filter(|one| one.outcome == Outcome::Found && !is_finding(one)) {
-            one.outcome = Outcome::Superfluous;
-        }
-        judged
+        let in_the_end = |one: &Judged| match &one.outcome {
+            _ if is_finding(one) => Outcome::Found,
+            Outcome::Found => Outcome::Superfluous,
+            other => other.clone(),
+        };
+        self.judged.iter().map(|one| Judged { outcome: in_the_end(one), ..one.clone() }).collect()
     }
 
     /// Corrects what came of an effect.
